@@ -1,0 +1,39 @@
+# The few commands people type. Everything is built by CMake; see CMakePresets.json.
+PRESET ?= release
+BUILD  := build/$(PRESET)
+BIN    := $(BUILD)/bin/inktrace
+SAMPLE := samples/acetaminophen.xyz
+WERROR ?= OFF
+
+.PHONY: all figure test bench format packages build clean
+
+all: build
+
+build: packages
+	@cmake --preset $(PRESET) -DINKTRACE_WERROR=$(WERROR) > $(BUILD).log 2>&1 || (cat $(BUILD).log; exit 1)
+	cmake --build --preset $(PRESET)
+
+# The paper's Figure 1: shaded, lines alone, both.
+figure: build
+	@mkdir -p out
+	@set -e; for compose in shaded lines both; do \
+	    $(BIN) render $(SAMPLE) --compose $$compose -o out/acetaminophen-$$compose.png --quiet; \
+	    echo "wrote out/acetaminophen-$$compose.png"; \
+	done
+
+test: build
+	ctest --preset $(PRESET)
+
+bench: build
+	$(BUILD)/bin/inktrace-bench
+
+format:
+	git ls-files '*.h' '*.cpp' | xargs clang-format -i
+
+# Installs what packages.txt names and is missing; asks for root only then.
+packages:
+	@mkdir -p build
+	@sh cmake/install-packages.sh packages.txt
+
+clean:
+	rm -rf build out

@@ -1,0 +1,38 @@
+# Flags of every target of ours, and the helper that declares one.
+
+add_library(inktrace_options INTERFACE)
+target_compile_options(inktrace_options INTERFACE
+    # Any x86-64 machine of the last fifteen years; hot loops are also built for newer ones and
+    # chosen at run time (src/base/multiversion.h).
+    $<$<STREQUAL:${CMAKE_SYSTEM_PROCESSOR},x86_64>:-march=x86-64-v2>
+    # The same bits from every instruction set: no fused multiply-add behind our back.
+    -ffp-contract=off
+    # Nobody reads errno or floating-point traps; without them square roots vectorise.
+    -fno-math-errno -fno-trapping-math
+    -Wall -Wextra -Wpedantic -Wconversion -Wshadow
+    $<$<BOOL:${INKTRACE_WERROR}>:-Werror>)
+if(CMAKE_BUILD_TYPE STREQUAL "Release")
+    target_compile_options(inktrace_options INTERFACE -O3)
+endif()
+if(INKTRACE_SANITIZE)
+    target_compile_options(inktrace_options INTERFACE
+        -fsanitize=${INKTRACE_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer -O1)
+    target_link_options(inktrace_options INTERFACE -fsanitize=${INKTRACE_SANITIZE})
+    # Function multiversioning resolves symbols before a sanitizer's runtime is up.
+    target_compile_definitions(inktrace_options INTERFACE INKTRACE_NO_MULTIVERSION)
+endif()
+
+# inktrace_layer(NAME SOURCES ... USES layers... PRIVATE libs...): one folder of src/ as one target.
+# USES are the layers below it (docs/architecture.md); PRIVATE are third parties that stay inside.
+function(inktrace_layer name)
+    cmake_parse_arguments(ARG "" "" "SOURCES;USES;PRIVATE" ${ARGN})
+    if(ARG_SOURCES)
+        add_library(${name} STATIC ${ARG_SOURCES})
+        target_link_libraries(${name} PUBLIC ${ARG_USES} PRIVATE inktrace_options ${ARG_PRIVATE})
+        target_include_directories(${name} PUBLIC ${PROJECT_SOURCE_DIR}/src)
+    else()
+        add_library(${name} INTERFACE)
+        target_link_libraries(${name} INTERFACE ${ARG_USES})
+        target_include_directories(${name} INTERFACE ${PROJECT_SOURCE_DIR}/src)
+    endif()
+endfunction()

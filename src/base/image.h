@@ -1,0 +1,42 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+namespace ink {
+
+struct Size {
+    int width = 0, height = 0;
+    std::size_t pixels() const {
+        return static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+    }
+    friend constexpr bool operator==(Size, Size) = default;
+};
+
+/// A finished picture for the screen: R, G, B, A bytes a pixel, rows from the top, sRGB-encoded
+/// colour, straight (not premultiplied) alpha.
+struct DisplayImage {
+    Size size;
+    std::vector<std::uint32_t> pixels;  ///< R in the lowest byte
+};
+
+/// One named plane of a float or integer image, rows from the top.
+struct Channel {
+    std::string name;  ///< as EXR readers know it: "R", "Z", "N.X", "id.primitive"
+    std::variant<std::vector<float>, std::vector<std::uint32_t>> values;
+};
+
+/// A picture as numbers: linear colour in R, G, B, A (premultiplied), and AOVs.
+struct ChannelImage {
+    Size size;
+    std::vector<Channel> channels;
+};
+
+/// What a written file tells about itself, in order: ("Software", "Inktrace 0.1.0"), ...
+using Metadata = std::vector<std::pair<std::string, std::string>>;
+
+}  // namespace ink

@@ -1,0 +1,48 @@
+#include "base/parallel.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/global_control.h>
+#include <tbb/info.h>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+
+namespace ink {
+
+int hardware_threads() { return tbb::info::default_concurrency(); }
+
+void parallel_for(std::size_t count, int threads,
+                  const std::function<void(std::size_t, std::size_t)>& body) {
+    if (threads == 0) threads = hardware_threads();
+    if (threads == 1) {
+        for (std::size_t i = 0; i < count; ++i) body(i, 0);
+        return;
+    }
+    // TBB starts as many threads as the machine has; more have to be asked for.
+    const tbb::global_control limit(
+        tbb::global_control::max_allowed_parallelism,
+        static_cast<std::size_t>(std::max(threads, hardware_threads())));
+    tbb::task_arena arena(threads);
+    arena.execute([&] {
+        // Grain 1: a tile is already a large piece of work, and tiles differ in cost.
+        tbb::parallel_for(
+            tbb::blocked_range<std::size_t>(0, count, 1),
+            [&](const tbb::blocked_range<std::size_t>& range) {
+                const auto worker =
+                    static_cast<std::size_t>(tbb::this_task_arena::current_thread_index());
+                for (std::size_t i = range.begin(); i != range.end(); ++i) body(i, worker);
+            },
+            tbb::simple_partitioner{});
+    });
+}
+
+void parallel_ranges(std::size_t count, std::size_t grain,
+                     const std::function<void(std::size_t, std::size_t)>& body) {
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, grain),
+                      [&](const tbb::blocked_range<std::size_t>& range) {
+                          body(range.begin(), range.end());
+                      });
+}
+
+}  // namespace ink
