@@ -1,0 +1,206 @@
+#include "io/polygon_mesh.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+#include <utility>
+
+#include "base/bounds.h"
+#include "base/error.h"
+#include "base/text.h"
+#include "io/triangulate.h"
+
+namespace ink {
+
+namespace {
+
+/// Edges sharper than this stay sharp where a file brings no normals of its own.
+constexpr float kCreaseAngleDeg = 35.f;
+
+/// Distance from the origin over size beyond which 32-bit coordinates show as steps: a float keeps
+/// 1.7e7 steps to the distance, so less than 2000 across the model, about one a pixel.
+constexpr double kFarFromOrigin = 1e4;
+
+bool usable(Vec3f normal) {
+    const float size = length(normal);
+    return std::isfinite(size) && size > 1e-12f;
+}
+
+/// Cuts the polygons of a file into the triangles of a Mesh.
+class Triangulator {
+  public:
+    Triangulator(const std::filesystem::path& file, const PolygonMesh& from)
+        : file_(file), from_(from), keep_faces_(has_other_than_triangles(from)) {
+        packed_.reserve(from.normals.size());
+        for (const Vec3f& normal : from.normals) packed_.push_back(pack_normal(normal));
+        mesh_.triangles.reserve(from.polygon_ends.size());
+    }
+
+    Mesh run() {
+        std::uint32_t begin = 0;
+        for (std::size_t i = 0; i < from_.polygon_ends.size(); ++i) {
+            const std::uint32_t end = from_.polygon_ends[i];
+            add_polygon(i, std::span(from_.corners).subspan(begin, end - begin));
+            begin = end;
+        }
+        return std::move(mesh_);
+    }
+
+    std::size_t too_small() const { return too_small_; }
+
+  private:
+    static bool has_other_than_triangles(const PolygonMesh& from) {
+        for (std::size_t i = 0; i < from.polygon_ends.size(); ++i) {
+            if (from.polygon_ends[i] != 3 * (i + 1)) return true;
+        }
+        return false;
+    }
+
+    void add_polygon(std::size_t polygon, std::span<const std::uint32_t> vertices) {
+        check_vertices(polygon, vertices);
+        if (vertices.size() < 3) {
+            ++too_small_;
+        } else if (vertices.size() == 3) {
+            add_triangle(polygon, {vertices[0], vertices[1], vertices[2]});
+        } else {
+            cut(polygon, vertices);
+        }
+    }
+
+    void check_vertices(std::size_t polygon, std::span<const std::uint32_t> vertices) const {
+        for (const std::uint32_t vertex : vertices) {
+            if (vertex < from_.positions.size()) continue;
+            throw InputError(file_, fmt::format("face {} uses vertex {}, but there are only {}; "
+                                                "the file is damaged: export it again",
+                                                polygon + 1, vertex, from_.positions.size()));
+        }
+    }
+
+    void cut(std::size_t polygon, std::span<const std::uint32_t> vertices) {
+        corners_.clear();
+        cuts_.clear();
+        for (const std::uint32_t vertex : vertices) corners_.push_back(from_.positions[vertex]);
+        if (!triangulate(corners_, cuts_)) {
+            throw InputError(file_,
+                             fmt::format("face {} has {} corners and cannot be cut into "
+                                         "triangles; triangulate the model where it was made",
+                                         polygon + 1, vertices.size()));
+        }
+        for (const auto& [a, b, c] : cuts_) {
+            add_triangle(polygon, {vertices[a], vertices[b], vertices[c]});
+        }
+    }
+
+    void add_triangle(std::size_t polygon, const Mesh::Triangle& triangle) {
+        mesh_.triangles.push_back(triangle);
+        if (keep_faces_) mesh_.faces.push_back(static_cast<std::uint32_t>(polygon));
+        if (!from_.parts.empty()) mesh_.parts.push_back(from_.parts[polygon]);
+        if (packed_.empty()) return;
+        mesh_.corner_normals.push_back(
+            {packed_[triangle[0]], packed_[triangle[1]], packed_[triangle[2]]});
+    }
+
+    const std::filesystem::path& file_;
+    const PolygonMesh& from_;
+    bool keep_faces_;
+    std::vector<std::uint32_t> packed_;  ///< normals, a vertex
+    Mesh mesh_;
+    std::size_t too_small_ = 0;
+    std::vector<Vec3f> corners_;
+    std::vector<Mesh::Triangle> cuts_;
+};
+
+void check_file_normals(PolygonMesh& polygons) {
+    if (std::ranges::all_of(polygons.normals, usable)) return;
+    polygons.normals.clear();
+    polygons.warnings.emplace_back(
+        "Some normals of the file are zero or not finite; all were computed anew.");
+}
+
+void warn_about_dropped(std::size_t too_small, std::size_t without_area, PolygonMesh& polygons) {
+    if (too_small > 0) {
+        polygons.warnings.push_back(
+            fmt::format("{} faces with fewer than 3 corners were left out.", too_small));
+    }
+    if (without_area > 0) {
+        polygons.warnings.push_back(
+            fmt::format("{} triangles without area were left out.", without_area));
+    }
+}
+
+/// Triangles, without what cannot be seen, with the vertices that they share merged.
+Mesh clean_mesh(const std::filesystem::path& file, PolygonMesh& polygons) {
+    Triangulator triangulator(file, polygons);
+    Mesh mesh = triangulator.run();
+    mesh.vertices = std::move(polygons.positions);
+    mesh.colors = std::move(polygons.colors);
+    const std::size_t without_area = weld(mesh);
+    warn_about_dropped(triangulator.too_small(), without_area, polygons);
+    if (mesh.triangles.empty()) {
+        throw InputError(file, "no face has an area; check the export and its scale");
+    }
+    return mesh;
+}
+
+void warn_if_far(const Object& object, PolygonMesh& polygons) {
+    if (!polygons.single_precision) return;
+    const Bounds3d bounds = object.world_bounds();
+    const double distance = length(bounds.centre());
+    const double size = length(bounds.extent());
+    if (distance <= kFarFromOrigin * size) return;
+    polygons.warnings.push_back(
+        fmt::format("The coordinates lie far from the origin ({:.2g} times the size of the model), "
+                    "where 32-bit numbers are too coarse for its shape; move the model nearer.",
+                    distance / size));
+}
+
+FileContents describe(Object object, PolygonMesh polygons) {
+    FileContents contents;
+    const Mesh& mesh = std::get<Mesh>(object.shape);
+    contents.format = std::move(polygons.format);
+    contents.counts = {{"vertices", mesh.vertices.size()}, {"triangles", mesh.triangles.size()}};
+    if (!object.part_names.empty()) contents.counts.emplace_back("parts", object.part_names.size());
+    contents.warnings = std::move(polygons.warnings);
+    contents.objects.push_back(std::move(object));
+    return contents;
+}
+
+}  // namespace
+
+bool PolygonMesh::add_position(Vec3d position) {
+    const auto in_range = [](double x) { return std::abs(x) <= kLargestCoordinate; };
+    if (!in_range(position.x) || !in_range(position.y) || !in_range(position.z)) return false;
+    if (positions.empty()) origin = position;
+    positions.push_back(to_float(position - origin));
+    return true;
+}
+
+std::string model_name(const std::filesystem::path& file) {
+    const bool compressed = to_lower(file.extension().string()) == ".gz";
+    return compressed ? file.stem().stem().string() : file.stem().string();
+}
+
+FileContents mesh_contents(const std::filesystem::path& file, PolygonMesh polygons) {
+    if (polygons.polygon_ends.empty()) {
+        throw InputError(file, polygons.positions.empty()
+                                   ? "holds no faces; export the model again"
+                                   : "holds points, no faces; export the surface with its faces");
+    }
+    check_file_normals(polygons);
+    Mesh mesh = clean_mesh(file, polygons);
+    if (mesh.corner_normals.empty()) smooth_normals(mesh, kCreaseAngleDeg);
+
+    Object object;
+    object.name = model_name(file);
+    object.kind = ObjectKind::mesh;
+    object.frame.origin = polygons.origin;
+    object.shape = std::move(mesh);
+    if (polygons.color) object.material.color = *polygons.color;
+    object.part_names = std::move(polygons.part_names);
+    warn_if_far(object, polygons);
+    return describe(std::move(object), std::move(polygons));
+}
+
+}  // namespace ink

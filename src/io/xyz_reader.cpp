@@ -1,0 +1,212 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <optional>
+
+#include "base/error.h"
+#include "base/text.h"
+#include "io/file_text.h"
+#include "io/formats.h"
+#include "io/molecule_file.h"
+#include "scene/elements.h"
+
+namespace ink {
+
+namespace {
+
+/// Where a row keeps what is drawn. The default is plain XYZ: symbol x y z.
+struct Columns {
+    std::optional<std::size_t> species = 0;
+    std::size_t position = 1;  ///< of x; y and z follow
+    std::size_t count = 4;     ///< that every row must have at least
+    bool has_radius = false;
+};
+
+/// One frame as it lies in the text, not looked into yet.
+struct RawFrame {
+    std::size_t count_line = 0;
+    std::size_t atoms = 0;
+    std::string_view comment;
+    std::string_view rows;
+};
+
+[[noreturn]] void throw_bad_count(std::string_view text, FilePlace place) {
+    throw InputError(place.file, place.line,
+                     fmt::format("expected a number of atoms, found {}; a count line must be "
+                                 "followed by one comment and that many rows",
+                                 excerpt(trim(text))));
+}
+
+std::size_t parse_count(std::string_view text, FilePlace place) {
+    const std::optional<std::int64_t> count = parse_int(text);
+    if (!count || *count < 0) throw_bad_count(text, place);
+    return static_cast<std::size_t>(*count);
+}
+
+/// Steps over the rows of a frame; the number of rows that are missing.
+std::size_t skip_rows(LineCursor& lines, RawFrame& frame) {
+    const std::string_view begin = lines.rest();
+    std::size_t missing = frame.atoms;
+    while (missing > 0 && lines.next()) --missing;
+    frame.rows = begin.substr(0, begin.size() - lines.rest().size());
+    return missing;
+}
+
+/// The value of Properties= in the comment of an extended XYZ frame.
+std::optional<std::string_view> properties(std::string_view comment) {
+    constexpr std::string_view kKey = "properties=";
+    const std::size_t begin = to_lower(comment).find(kKey);
+    if (begin == std::string::npos) return std::nullopt;
+    std::string_view value = comment.substr(begin + kKey.size());
+    if (value.starts_with('"')) {
+        value.remove_prefix(1);
+        return value.substr(0, value.find('"'));
+    }
+    return take_word(value);
+}
+
+/// Reads "species:S:1:pos:R:3:...".
+Columns parse_columns(std::string_view text, FilePlace place) {
+    constexpr std::int64_t kMostColumns = 1000;
+    const auto check = [&](bool good, std::string_view problem) {
+        if (good) return;
+        throw InputError(place.file, place.line,
+                         fmt::format("{} in Properties={}; expected name:type:count, as in "
+                                     "species:S:1:pos:R:3",
+                                     problem, excerpt(text)));
+    };
+    const std::vector<std::string_view> fields = split(text, ':');
+    check(fields.size() % 3 == 0, "an incomplete entry");
+    Columns columns{.species = std::nullopt, .position = 0, .count = 0};
+    bool has_position = false;
+    for (std::size_t i = 0; i < fields.size(); i += 3) {
+        const std::string name = to_lower(fields[i]);
+        const std::int64_t width = parse_int(fields[i + 2]).value_or(0);
+        check(width >= 1 && width <= kMostColumns, "a wrong number of columns");
+        if (name == "species" || (name == "z" && !columns.species)) columns.species = columns.count;
+        if (name == "pos") {
+            check(width == 3, "a position without three columns");
+            columns.position = columns.count;
+            has_position = true;
+        }
+        columns.has_radius = columns.has_radius || name == "radius";
+        columns.count += static_cast<std::size_t>(width);
+    }
+    check(has_position, "no entry 'pos'");
+    return columns;
+}
+
+/// "C", "c", "6", "C12" and "Fe3+" are elements; a word such as "Du" stands for no element.
+std::uint8_t parse_element(std::string_view text, FilePlace place) {
+    if (const std::optional<std::int64_t> number = parse_int(text)) {
+        const bool known = *number > 0 && *number < static_cast<std::int64_t>(kElementCount);
+        return known ? static_cast<std::uint8_t>(*number) : std::uint8_t{0};
+    }
+    const auto is_letter = [](char c) { return (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z'); };
+    const auto end = std::ranges::find_if_not(text, is_letter);
+    const auto letters = static_cast<std::size_t>(end - text.begin());
+    if (letters == 0) {
+        throw InputError(place.file, place.line,
+                         fmt::format("expected an element symbol such as C, N or Fe, found {}; "
+                                     "does the frame have fewer atoms than its count line says?",
+                                     excerpt(text)));
+    }
+    return atomic_number(text.substr(0, letters)).value_or(0);
+}
+
+void add_row(MoleculeBuilder& molecule, const Columns& columns, std::string_view row,
+             FilePlace place) {
+    std::string_view species;
+    std::array<std::string_view, 3> position;
+    std::size_t column = 0;
+    for (; column < columns.count; ++column) {
+        const std::string_view word = take_word(row);
+        if (word.empty()) break;
+        if (column == columns.species) species = word;
+        const std::size_t axis = column - columns.position;
+        if (axis < 3) position[axis] = word;
+    }
+    if (column < columns.count) {
+        throw InputError(place.file, place.line,
+                         fmt::format("the row has {} of {} columns; does the frame have fewer "
+                                     "atoms than its count line says?",
+                                     column, columns.count));
+    }
+    const std::uint8_t element = columns.species ? parse_element(species, place) : std::uint8_t{0};
+    molecule.add_atom(parse_position(position[0], position[1], position[2], place), element);
+}
+
+Columns frame_columns(const RawFrame& frame, const std::filesystem::path& file) {
+    const std::optional<std::string_view> text = properties(frame.comment);
+    return text ? parse_columns(*text, {file, frame.count_line + 1}) : Columns{};
+}
+
+void add_atoms(MoleculeBuilder& molecule, const RawFrame& frame, const Columns& columns,
+               const std::filesystem::path& file) {
+    molecule.reserve(frame.atoms);
+    LineCursor rows(frame.rows);
+    while (rows.next()) {
+        add_row(molecule, columns, rows.line(), {file, frame.count_line + 1 + rows.number()});
+    }
+}
+
+/// The frames of a file: how many, and the one that is wanted.
+struct Frames {
+    int count = 0;
+    RawFrame wanted;
+    bool last_is_cut = false;
+};
+
+/// A simulation that is still running leaves its last frame cut: that one is left out, unless it is
+/// the one to draw.
+Frames find_frames(std::string_view text, int wanted, const std::filesystem::path& file) {
+    Frames frames;
+    LineCursor lines(text);
+    while (lines.next()) {
+        if (trim(lines.line()).empty()) continue;
+        RawFrame frame;
+        frame.count_line = lines.number();
+        frame.atoms = parse_count(lines.line(), {file, lines.number()});
+        if (lines.next()) frame.comment = lines.line();
+        if (const std::size_t missing = skip_rows(lines, frame); missing > 0) {
+            if (frames.count > 0 && frames.count != wanted) {
+                frames.last_is_cut = true;
+                break;
+            }
+            throw InputError(file, frame.count_line,
+                             fmt::format("announces {} atoms, but only {} rows follow; correct the "
+                                         "count, or copy the file again if it was cut",
+                                         frame.atoms, frame.atoms - missing));
+        }
+        if (frames.count == wanted) frames.wanted = frame;
+        ++frames.count;
+    }
+    return frames;
+}
+
+FileContents read_xyz(const std::filesystem::path& file, const ReadOptions& options) {
+    const std::string text = read_text(file);
+    const Frames frames = find_frames(text, options.frame, file);
+    if (frames.count > 0) check_frame(options.frame, frames.count, file);
+    MoleculeBuilder molecule;
+    const Columns columns = frame_columns(frames.wanted, file);
+    add_atoms(molecule, frames.wanted, columns, file);
+    FileContents contents = std::move(molecule).finish(file, "XYZ", frames.count);
+    if (columns.has_radius) {
+        contents.warnings.emplace_back(
+            "The column 'radius' is not used: atoms are drawn with their van der Waals radius.");
+    }
+    if (frames.last_is_cut) {
+        contents.warnings.emplace_back("The last frame is cut short and was left out.");
+    }
+    return contents;
+}
+
+constexpr std::array<std::string_view, 2> kExtensions{"xyz", "extxyz"};
+
+}  // namespace
+
+Reader xyz_reader() { return {"XYZ", kExtensions, read_xyz}; }
+
+}  // namespace ink

@@ -1,0 +1,110 @@
+#include "scene/scene.h"
+
+#include <algorithm>
+#include <cmath>
+#include <mutex>
+
+#include "base/parallel.h"
+
+namespace ink {
+
+namespace {
+
+constexpr std::size_t kGrain = 1 << 16;
+
+/// Bounds of `count` primitives, where `add(bounds, i)` extends a box by primitive i.
+template <class Add>
+Bounds3f bounds_of(std::size_t count, const Add& add) {
+    Bounds3f total;
+    std::mutex mutex;
+    parallel_ranges(count, kGrain, [&](std::size_t begin, std::size_t end) {
+        Bounds3f part;
+        for (std::size_t i = begin; i < end; ++i) add(part, i);
+        const std::scoped_lock lock(mutex);
+        total.add(part);
+    });
+    return total;
+}
+
+Bounds3f shape_bounds(const Spheres& shape) {
+    return bounds_of(shape.spheres.size(), [&](Bounds3f& box, std::size_t i) {
+        box.add(shape.spheres[i].centre, shape.spheres[i].radius);
+    });
+}
+
+Bounds3f shape_bounds(const Mesh& shape) {
+    return bounds_of(shape.vertices.size(),
+                     [&](Bounds3f& box, std::size_t i) { box.add(shape.vertices[i]); });
+}
+
+/// A change of frame: stored' = stored * scale + shift.
+struct Rebase {
+    double scale;
+    Vec3d shift;
+
+    Rebase(const Frame& from, const Frame& to)
+        : scale(from.unit / to.unit), shift((from.origin - to.origin) / to.unit) {}
+    Vec3f operator()(Vec3f p) const { return to_float(to_double(p) * scale + shift); }
+};
+
+void rebase(Spheres& shape, const Rebase& move) {
+    parallel_ranges(shape.spheres.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            Sphere& sphere = shape.spheres[i];
+            sphere.centre = move(sphere.centre);
+            sphere.radius = static_cast<float>(sphere.radius * move.scale);
+        }
+    });
+}
+
+void rebase(Mesh& shape, const Rebase& move) {
+    parallel_ranges(shape.vertices.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) shape.vertices[i] = move(shape.vertices[i]);
+    });
+}
+
+/// The frame about `bounds`: a power of two as unit, so that a change of scale rounds nothing.
+Frame frame_about(const Bounds3d& bounds) {
+    const double half_diagonal = length(bounds.extent()) * 0.5;
+    const double unit = half_diagonal > 0.0 ? std::exp2(std::ceil(std::log2(half_diagonal))) : 1.0;
+    return {bounds.centre(), unit};
+}
+
+}  // namespace
+
+std::size_t Object::primitive_count() const {
+    if (const auto* spheres = std::get_if<Spheres>(&shape)) return spheres->spheres.size();
+    return std::get<Mesh>(shape).triangles.size();
+}
+
+Bounds3d Object::world_bounds() const {
+    const Bounds3f stored = std::visit([](const auto& s) { return shape_bounds(s); }, shape);
+    Bounds3d world;
+    if (stored.empty()) return world;
+    world.add(frame.to_world(stored.lower));
+    world.add(frame.to_world(stored.upper));
+    return world;
+}
+
+Scene::Scene(std::vector<Object> objects) : objects_(std::move(objects)) {
+    Bounds3d world;
+    for (const Object& object : objects_) world.add(object.world_bounds());
+    if (world.empty()) return;
+
+    frame_ = frame_about(world);
+    for (Object& object : objects_) {
+        const Rebase move(object.frame, frame_);
+        std::visit([&](auto& shape) { rebase(shape, move); }, object.shape);
+        object.frame = frame_;
+    }
+    bounds_.add(frame_.from_world(world.lower));
+    bounds_.add(frame_.from_world(world.upper));
+}
+
+std::size_t Scene::primitive_count() const {
+    std::size_t count = 0;
+    for (const Object& object : objects_) count += object.primitive_count();
+    return count;
+}
+
+}  // namespace ink

@@ -1,0 +1,63 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "base/bounds.h"
+#include "base/vec.h"
+#include "scene/ids.h"
+#include "scene/material.h"
+#include "scene/mesh.h"
+#include "scene/spheres.h"
+
+namespace ink {
+
+/// Where stored float coordinates lie in the world: world = origin + unit * stored. A frame near
+/// the data keeps all bits of a float for the shape, however far from zero or small the file's
+/// numbers are; `unit` is a power of two, so that scaling rounds nothing.
+struct Frame {
+    Vec3d origin;
+    double unit = 1.0;
+
+    Vec3d to_world(Vec3f stored) const { return origin + to_double(stored) * unit; }
+    Vec3f from_world(Vec3d world) const { return to_float((world - origin) / unit); }
+};
+
+enum class ObjectKind : std::uint8_t { molecule, particles, mesh };
+
+/// One thing that was loaded or added: a molecule, a mesh, a particle set.
+struct Object {
+    std::string name;
+    ObjectKind kind = ObjectKind::mesh;
+    Frame frame{};  ///< of `shape`, until the object joins a scene
+    std::variant<Spheres, Mesh> shape;
+    Material material{};
+    std::vector<std::string> part_names{};
+
+    std::size_t primitive_count() const;
+    Bounds3d world_bounds() const;
+};
+
+/// Everything there is to see, in one frame: the bounds are centred on the origin and have a half
+/// diagonal in (1/2, 1].
+class Scene {
+  public:
+    Scene() = default;
+    /// Brings all objects into one frame. Their coordinates must be finite.
+    explicit Scene(std::vector<Object> objects);
+
+    const std::vector<Object>& objects() const { return objects_; }
+    const Frame& frame() const { return frame_; }
+    const Bounds3f& bounds() const { return bounds_; }  ///< in the scene's frame
+    std::size_t primitive_count() const;
+    bool empty() const { return objects_.empty(); }
+
+  private:
+    std::vector<Object> objects_;
+    Frame frame_;
+    Bounds3f bounds_;
+};
+
+}  // namespace ink

@@ -1,0 +1,637 @@
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+#include <zlib.h>
+
+#include <map>
+#include <set>
+
+#include "base/error.h"
+#include "io/file_text.h"
+#include "io/reader.h"
+#include "scene/elements.h"
+#include "test_files.h"
+
+namespace ink {
+namespace {
+
+using test::data_file;
+using test::TemporaryFolder;
+
+const Spheres& spheres(const FileContents& contents) {
+    return std::get<Spheres>(contents.objects.at(0).shape);
+}
+
+std::uint64_t count(const FileContents& contents, std::string_view what) {
+    for (const auto& [name, value] : contents.counts) {
+        if (name == what) return value;
+    }
+    return 0;
+}
+
+/// "CHHO": the elements in the order of the atoms, told by radius and colour.
+std::string elements(const FileContents& contents) {
+    std::string text;
+    for (std::size_t i = 0; i < spheres(contents).spheres.size(); ++i) {
+        std::uint8_t z = 0;
+        while (z < kElementCount &&
+               (element(z).color != spheres(contents).colors[i] ||
+                element(z).vdw_radius != spheres(contents).spheres[i].radius)) {
+            ++z;
+        }
+        text += z < kElementCount ? element(z).symbol : "(no element)";
+    }
+    return text;
+}
+
+std::vector<Vec3d> positions(const FileContents& contents) {
+    std::vector<Vec3d> out;
+    for (const Sphere& sphere : spheres(contents).spheres) {
+        out.push_back(contents.objects[0].frame.to_world(sphere.centre));
+    }
+    return out;
+}
+
+void expect_same_spheres(const FileContents& a, const FileContents& b, double tolerance) {
+    EXPECT_EQ(elements(a), elements(b));
+    const std::vector<Vec3d> pa = positions(a);
+    const std::vector<Vec3d> pb = positions(b);
+    ASSERT_EQ(pa.size(), pb.size());
+    for (std::size_t i = 0; i < pa.size(); ++i) EXPECT_LE(length(pa[i] - pb[i]), tolerance) << i;
+}
+
+/// What reading says about a file that it refuses.
+std::string refusal(const std::filesystem::path& file, int frame = 0) {
+    try {
+        read_file(file, {.frame = frame});
+    } catch (const InputError& error) {
+        return error.what();
+    }
+    return "(it was read)";
+}
+
+void expect_refused(const std::filesystem::path& file, std::string_view place_and_problem,
+                    std::string_view remedy, int frame = 0) {
+    const std::string message = refusal(file, frame);
+    EXPECT_NE(message.find(file.string() + std::string(place_and_problem)), std::string::npos)
+        << message;
+    EXPECT_NE(message.find(remedy), std::string::npos) << message;
+}
+
+std::filesystem::path write_gzip(const TemporaryFolder& folder, std::string_view name,
+                                 const std::string& content) {
+    const std::filesystem::path file = folder.path() / name;
+    const gzFile out = gzopen(file.c_str(), "wb");
+    gzwrite(out, content.data(), static_cast<unsigned>(content.size()));
+    gzclose(out);
+    return file;
+}
+
+// Formaldehyde, once in each format.
+constexpr std::string_view kXyz =
+    "4\nformaldehyde\nC 0.0 0.0 0.0\nO 1.2 0.0 0.0\nH -0.6 0.9 0.0\nH -0.6 -0.9 0.1\n";
+
+std::string pdb_atom(std::string_view name, std::string_view residue, int number, Vec3d p,
+                     std::string_view symbol, char location = ' ', char chain = 'A') {
+    return fmt::format("ATOM  {:5} {:4}{}{:>3} {}{:4}    {:8.3f}{:8.3f}{:8.3f}  1.00  0.00{:>12}\n",
+                       1, name, location, residue, chain, number, p.x, p.y, p.z, symbol);
+}
+
+std::string formaldehyde_pdb() {
+    return pdb_atom(" C1 ", "FOR", 1, {0, 0, 0}, "C") +
+           pdb_atom(" O1 ", "FOR", 1, {1.2, 0, 0}, "O") +
+           pdb_atom(" H1 ", "FOR", 1, {-0.6, 0.9, 0}, "H") +
+           pdb_atom(" H2 ", "FOR", 1, {-0.6, -0.9, 0.1}, "H") + "END\n";
+}
+
+constexpr std::string_view kCifHeader =
+    "data_test\nloop_\n_atom_site.group_PDB\n_atom_site.type_symbol\n_atom_site.label_alt_id\n"
+    "_atom_site.label_comp_id\n_atom_site.auth_asym_id\n_atom_site.auth_seq_id\n"
+    "_atom_site.Cartn_x\n_atom_site.Cartn_y\n_atom_site.Cartn_z\n"
+    "_atom_site.pdbx_PDB_model_num\n";
+
+std::string cif(std::string_view rows) { return std::string(kCifHeader) + std::string(rows); }
+
+constexpr std::string_view kCifRows =
+    "HETATM C . FOR A 1 0.0 0.0 0.0 1\nHETATM O . FOR A 1 1.2 0.0 0.0 1\n"
+    "HETATM H . 'FOR' A 1 -0.6 0.9(2) 0.0 1\nHETATM H . FOR A 1 -0.6 -0.9 0.1 1\n";
+
+constexpr std::string_view kSdf =
+    "formaldehyde\n test\n\n  4  3  0  0  0  0  0  0  0  0999 V2000\n"
+    "    0.0000    0.0000    0.0000 C   0  0\n    1.2000    0.0000    0.0000 O   0  0\n"
+    "   -0.6000    0.9000    0.0000 H   0  0\n   -0.6000   -0.9000    0.1000 H   0  0\n"
+    "  1  2  2  0\n  1  3  1  0\n  1  4  1  0\nM  END\n$$$$\n";
+
+constexpr std::string_view kV3000 =
+    "formaldehyde\n test\n\n  0  0  0  0  0  0  0  0  0  0999 V3000\nM  V30 BEGIN CTAB\n"
+    "M  V30 COUNTS 4 3 0 0 0\nM  V30 BEGIN ATOM\nM  V30 1 C 0 0 0 0\nM  V30 2 O 1.2 0 -\n"
+    "M  V30 0 0\nM  V30 7 H -0.6 0.9 0 0\nM  V30 9 H -0.6 -0.9 0.1 0\nM  V30 END ATOM\n"
+    "M  V30 BEGIN BOND\nM  V30 1 2 1 2\nM  V30 2 1 1 7\nM  V30 3 1 1 9\nM  V30 END BOND\n"
+    "M  V30 END CTAB\nM  END\n";
+
+TEST(MoleculeReader, FindsTheSameSpheresInEveryFormat) {
+    const TemporaryFolder folder;
+    const FileContents xyz = read_file(folder.write("a.xyz", kXyz));
+    EXPECT_EQ(elements(xyz), "COHH");
+    EXPECT_EQ(xyz.length_unit, "angstrom");
+    const std::map<std::string, std::string> others{{"a.pdb", formaldehyde_pdb()},
+                                                    {"a.cif", cif(kCifRows)},
+                                                    {"a.sdf", std::string(kSdf)},
+                                                    {"a.mol", std::string(kV3000)}};
+    for (const auto& [name, content] : others) {
+        SCOPED_TRACE(name);
+        expect_same_spheres(xyz, read_file(folder.write(name, content)), 1e-6);
+    }
+}
+
+TEST(MoleculeReader, FindsTheSameSpheresInAnyFrameOfReference) {
+    const TemporaryFolder folder;
+    const FileContents contents =
+        read_file(folder.write("far.xyz", "2\n\nC 1e9 0 0\nO 1e9 1.2 0\n"));
+    EXPECT_NEAR(spheres(contents).spheres[1].centre.y, 1.2, 1e-6);
+}
+
+TEST(MoleculeReader, UnpacksGzip) {
+    const TemporaryFolder folder;
+    const FileContents plain = read_file(folder.write("a.xyz", kXyz));
+    for (const auto& [name, content] :
+         std::map<std::string, std::string>{{"a.xyz.gz", std::string(kXyz)},
+                                            {"a.pdb.gz", formaldehyde_pdb()},
+                                            {"a.cif.gz", cif(kCifRows)},
+                                            {"a.sdf.gz", std::string(kSdf)}}) {
+        const FileContents packed = read_file(write_gzip(folder, name, content));
+        expect_same_spheres(plain, packed, 1e-6);
+        EXPECT_EQ(packed.objects[0].name, "a");
+    }
+}
+
+TEST(MoleculeReader, RefusesGzipThatWasCutOrDamaged) {
+    const TemporaryFolder folder;
+    std::string text;
+    for (int i = 0; i < 1000; ++i) text += pdb_atom(" C1 ", "FOR", i, {i / 7.0, i / 3.0, 0}, "C");
+    std::string bytes = test::read_bytes(write_gzip(folder, "whole.pdb.gz", text));
+    const auto cut = folder.write("cut.pdb.gz", bytes.substr(0, bytes.size() / 2));
+    expect_refused(cut, ": the compressed data", "copy or download it again");
+    bytes[bytes.size() / 2] = static_cast<char>(~bytes[bytes.size() / 2]);
+    const auto damaged = folder.write("damaged.pdb.gz", bytes);
+    expect_refused(damaged, ": the compressed data are damaged", "copy or download it again");
+}
+
+TEST(FileText, RefusesGzipThatUnpacksToMoreThanTheLimit) {
+    const TemporaryFolder folder;
+    const auto file = write_gzip(folder, "bomb.xyz.gz", std::string(5 << 20, ' '));
+    EXPECT_LT(std::filesystem::file_size(file), 10000u);
+    EXPECT_EQ(read_text(file, 5 << 20).size(), std::size_t{5} << 20);
+    EXPECT_THROW(read_text(file, (5 << 20) - 1), InputError);
+}
+
+TEST(MoleculeReader, NamesAFrameThatIsNotThere) {
+    const TemporaryFolder folder;
+    const auto xyz = folder.write("a.xyz", std::string(kXyz) + std::string(kXyz));
+    expect_refused(xyz, ": has no frame 2", "its 2 frames are 0 to 1", 2);
+    expect_refused(xyz, ": has no frame -1", "its 2 frames are 0 to 1", -1);
+    expect_refused(folder.write("a.pdb", formaldehyde_pdb()), ": has no frame 1",
+                   "its only frame is 0", 1);
+    expect_refused(folder.write("a.cif", cif(kCifRows)), ": has no frame 1", "its only frame is 0",
+                   1);
+    expect_refused(folder.write("a.sdf", kSdf), ": has no frame 1", "its only frame is 0", 1);
+}
+
+TEST(MoleculeReader, WarnsOnceOfUnknownElements) {
+    const TemporaryFolder folder;
+    const FileContents contents =
+        read_file(folder.write("a.xyz", "3\n\nC 0 0 0\nDu 1 0 0\nQ 2 0 0\n"));
+    EXPECT_EQ(elements(contents), "CXxXx");
+    ASSERT_EQ(contents.warnings.size(), 1u);
+    EXPECT_NE(contents.warnings[0].find("2 atoms have no known element"), std::string::npos);
+}
+
+// ---- PDB ----
+
+TEST(PdbReader, TakesTheElementFromTheAtomNameWhereThereIsNoColumn) {
+    const TemporaryFolder folder;
+    const auto name_only = [&](std::string_view name, std::string_view residue) {
+        const std::string line = pdb_atom(name, residue, 1, {1, 2, 3}, "").substr(0, 66);
+        return elements(read_file(folder.write("a.pdb", line + "\n")));
+    };
+    EXPECT_EQ(name_only(" CA ", "ALA"), "C");
+    EXPECT_EQ(name_only("CA  ", " CA"), "Ca");
+    EXPECT_EQ(name_only("CA  ", "ALA"), "C") << "starts one column too early";
+    EXPECT_EQ(name_only("HG11", "VAL"), "H");
+    EXPECT_EQ(name_only("HG  ", "SER"), "H") << "starts one column too early";
+    EXPECT_EQ(name_only("1HB ", "ALA"), "H");
+    EXPECT_EQ(name_only("FE  ", "HEM"), "Fe");
+    EXPECT_EQ(name_only("SE  ", "MSE"), "Se");
+}
+
+TEST(PdbReader, MakesChainsParts) {
+    const TemporaryFolder folder;
+    const FileContents contents = read_file(
+        folder.write("a.pdb", pdb_atom(" CA ", "ALA", 1, {0, 0, 0}, "C", ' ', 'A') +
+                                  pdb_atom(" CA ", "ALA", 1, {3, 0, 0}, "C", ' ', 'B') + "TER\n" +
+                                  pdb_atom(" O  ", "HOH", 2, {6, 0, 0}, "O", ' ', 'A')));
+    EXPECT_EQ(contents.objects[0].part_names, (std::vector<std::string>{"A", "B"}));
+    EXPECT_EQ(spheres(contents).parts, (std::vector<std::uint32_t>{0, 1, 0}));
+    EXPECT_EQ(count(contents, "residues"), 3u);
+    EXPECT_EQ(count(contents, "chains"), 2u);
+}
+
+TEST(PdbReader, KeepsTheFirstOfAlternateLocationsAndSaysSo) {
+    const TemporaryFolder folder;
+    const FileContents contents =
+        read_file(folder.write("a.pdb", pdb_atom(" N  ", "SER", 1, {0, 0, 0}, "N") +
+                                            pdb_atom(" CA ", "SER", 1, {1, 0, 0}, "C", 'B') +
+                                            pdb_atom(" CA ", "SER", 1, {2, 0, 0}, "C", 'A') +
+                                            pdb_atom(" CA ", "PRO", 2, {3, 0, 0}, "C", 'A') +
+                                            pdb_atom(" SG ", "CYS", 2, {4, 0, 0}, "S", 'B') +
+                                            pdb_atom(" SG ", "CYS", 3, {5, 0, 0}, "S", 'B')));
+    EXPECT_EQ(elements(contents), "NCCS");
+    EXPECT_EQ(positions(contents)[1].x, 1.0);
+    EXPECT_EQ(count(contents, "residues"), 3u);
+    ASSERT_EQ(contents.warnings.size(), 1u);
+    EXPECT_NE(contents.warnings[0].find("2 atoms have been left out"), std::string::npos);
+}
+
+TEST(PdbReader, ReturnsTheModelThatIsAskedFor) {
+    const TemporaryFolder folder;
+    const auto model = [](int number, double x) {
+        return fmt::format("MODEL {:8}\n", number) + pdb_atom(" CA ", "ALA", 1, {x, 0, 0}, "C") +
+               "ENDMDL\n";
+    };
+    // Equal numbers are wrong, but harmless.
+    const auto file = folder.write("a.pdb", model(1, 5) + model(1, 6) + model(1, 7) + "END\n");
+    const FileContents contents = read_file(file, {.frame = 1});
+    EXPECT_EQ(contents.frames, 3);
+    EXPECT_EQ(positions(contents).at(0).x, 6.0);
+}
+
+TEST(PdbReader, CountsFramesThatOnlyEndSeparates) {
+    const TemporaryFolder folder;
+    const auto file = folder.write("a.pdb", formaldehyde_pdb() + formaldehyde_pdb());
+    EXPECT_EQ(read_file(file).frames, 2);
+    EXPECT_EQ(count(read_file(file, {.frame = 1}), "atoms"), 4u);
+}
+
+TEST(PdbReader, RefusesCoordinatesThatAreNoNumbers) {
+    const TemporaryFolder folder;
+    const std::string good = pdb_atom(" CA ", "ALA", 1, {1, 2, 3}, "C");
+    const auto with_x = [&](std::string_view x) {
+        return folder.write("a.pdb", good + std::string(good).replace(30, 8, x));
+    };
+    EXPECT_EQ(refusal(with_x("   1.500")), "(it was read)");
+    expect_refused(with_x("     nan"), ":2: coordinate x 'nan' is not a number",
+                   "repair or remove the atom");
+    expect_refused(with_x("     inf"), ":2: coordinate x 'inf' is not a number", "repair");
+    expect_refused(with_x("********"), ":2: coordinate x '********' is not a number", "repair");
+    expect_refused(with_x("        "), ":2: coordinate x is missing", "repair");
+    expect_refused(with_x(" 1.5 2.5"), ":2: coordinate x '1.5 2.5' is not a number", "repair");
+    expect_refused(with_x("    1e40"), ":2: coordinate x '1e40' is too large", "repair");
+}
+
+TEST(PdbReader, RefusesALineThatEndsInsideTheCoordinates) {
+    const TemporaryFolder folder;
+    const std::string good = pdb_atom(" CA ", "ALA", 1, {1, 2, 3}, "C");
+    const auto file = folder.write("a.pdb", "HEADER\n" + good + good.substr(0, 47));
+    expect_refused(file, ":3: the line ends at column 47", "repair or remove the atom");
+    EXPECT_EQ(refusal(folder.write("b.pdb", good + good.substr(0, 54))), "(it was read)");
+}
+
+TEST(PdbReader, SurvivesBytesThatAreNoText) {
+    const TemporaryFolder folder;
+    std::string atom = pdb_atom(" CA ", "ALA", 1, {1, 2, 3}, "C");
+    atom[7] = '\0';
+    atom[12] = '\xff';
+    atom[60] = '\0';
+    EXPECT_EQ(elements(read_file(folder.write("a.pdb", atom + atom))), "CC");
+}
+
+TEST(PdbReader, RefusesAFileWithoutAtoms) {
+    const TemporaryFolder folder;
+    expect_refused(folder.write("a.pdb", "HEADER    NOTHING\nEND\n"), ": holds no atoms",
+                   "coordinates");
+}
+
+// ---- mmCIF ----
+
+TEST(MmcifReader, ReturnsTheModelThatIsAskedFor) {
+    const TemporaryFolder folder;
+    const auto file =
+        folder.write("a.cif", cif("ATOM C . ALA A 1 5 0 0 1\n"
+                                  "ATOM N . ALA A 1 6 0 0 2\nATOM O . ALA A 1 7 0 0 2\n"));
+    EXPECT_EQ(read_file(file).frames, 2);
+    EXPECT_EQ(elements(read_file(file)), "C");
+    EXPECT_EQ(elements(read_file(file, {.frame = 1})), "NO");
+}
+
+TEST(MmcifReader, KeepsTheFirstOfAlternateLocationsAndSaysSo) {
+    const TemporaryFolder folder;
+    const FileContents contents = read_file(
+        folder.write("a.cif", cif("ATOM N . SER A 1 0 0 0 1\nATOM C B SER A 1 1 0 0 1\n"
+                                  "ATOM C A SER A 1 2 0 0 1\nATOM C A PRO A 2 3 0 0 1\n"
+                                  "ATOM S B CYS A 2 4 0 0 1\nATOM S B CYS A 3 5 0 0 1\n")));
+    EXPECT_EQ(elements(contents), "NCCS");
+    EXPECT_EQ(count(contents, "residues"), 3u);
+    ASSERT_EQ(contents.warnings.size(), 1u);
+    EXPECT_NE(contents.warnings[0].find("2 atoms have been left out"), std::string::npos);
+}
+
+TEST(MmcifReader, NamesTheLineOfACoordinateThatIsNoNumber) {
+    const TemporaryFolder folder;
+    const auto second_atom_x = [&](std::string_view x) {
+        return folder.write("a.cif", cif(fmt::format("ATOM C . ALA A 1 5 0 0 1\n"
+                                                     "ATOM C . ALA A 1\n{} 0 0 1\n",
+                                                     x)));
+    };
+    expect_refused(second_atom_x("nan"), ":15: coordinate x 'nan' is not a number", "repair");
+    expect_refused(second_atom_x("?"), ":15: coordinate x is missing", "repair");
+    expect_refused(second_atom_x("1.2.3"), ":15: coordinate x '1.2.3' is not a number", "repair");
+    expect_refused(second_atom_x("-1e16"), ":15: coordinate x '-1e16' is too large", "repair");
+}
+
+TEST(MmcifReader, RefusesATableThatWasCut) {
+    const TemporaryFolder folder;
+    expect_refused(folder.write("a.cif", cif("ATOM C . ALA A 1 5 0 0 1\nATOM C . ALA A")),
+                   ":14: the last row of the atom table has 5 of 10 values", "copy the file again");
+}
+
+TEST(MmcifReader, NamesTheCoordinateColumnThatIsMissing) {
+    const TemporaryFolder folder;
+    expect_refused(
+        folder.write("a.cif", "data_a\nloop_\n_atom_site.Cartn_x\n_atom_site.Cartn_y\n1 2\n"),
+        ":5: the atom table has no column _atom_site.Cartn_z", "it needs Cartn_x");
+}
+
+TEST(MmcifReader, NamesTheLineOfASyntaxError) {
+    const TemporaryFolder folder;
+    const auto file = folder.write("a.cif", "data_a\n_a.b\n;never closed\nand so on\n");
+    expect_refused(file, ":", "repair the file");
+    EXPECT_NE(refusal(file).find("unterminated text field"), std::string::npos);
+    expect_refused(folder.write("b.cif", "this is not CIF\n"), ":1: expected block header",
+                   "repair");
+}
+
+TEST(MmcifReader, SaysThatFractionalCoordinatesCannotBeReadYet) {
+    const TemporaryFolder folder;
+    expect_refused(
+        folder.write("a.cif", "data_a\nloop_\n_atom_site_label\n_atom_site_fract_x\nC1 0.5\n"),
+        ": is a crystal structure with fractional coordinates", "convert it to XYZ");
+}
+
+// ---- XYZ ----
+
+TEST(XyzReader, ReadsSymbolsNumbersAndLabels) {
+    const TemporaryFolder folder;
+    const auto file = folder.write("a.xyz",
+                                   "6\n\nC 0 0 0\n8 1 0 0\ncl 2 0 0\nFe3+ 3 0 0\n"
+                                   "H12\t4\t0\t0 0.1 0.2\n\tD 5 0 0\r\n");
+    EXPECT_EQ(elements(read_file(file)), "COClFeHH");
+}
+
+TEST(XyzReader, FindsSpeciesAndPositionByName) {
+    const TemporaryFolder folder;
+    const auto file = folder.write(
+        "a.xyz",
+        "1\nLattice=\"1 0 0 0 1 0 0 0 1\" Properties=id:I:1:pos:R:3:species:S:1:radius:R:1\n"
+        "7 1.5 2.5 3.5 N 0.3\n");
+    const FileContents contents = read_file(file);
+    EXPECT_EQ(elements(contents), "N");
+    EXPECT_EQ(positions(contents)[0], (Vec3d{1.5, 2.5, 3.5}));
+    ASSERT_EQ(contents.warnings.size(), 1u);
+    EXPECT_NE(contents.warnings[0].find("radius"), std::string::npos);
+}
+
+TEST(XyzReader, RefusesPropertiesThatMakeNoSense) {
+    const TemporaryFolder folder;
+    for (const std::string value : {"species:S", "species:S:1", "pos:R:2", "species:S:x:pos:R:3",
+                                    "species:S:99999999999:pos:R:3", ""}) {
+        const auto file = folder.write("a.xyz", "1\nProperties=" + value + "\nC 0 0 0\n");
+        expect_refused(file, ":2: ", "species:S:1:pos:R:3");
+    }
+}
+
+TEST(XyzReader, RefusesACountThatTheFileDoesNotHold) {
+    const TemporaryFolder folder;
+    expect_refused(folder.write("a.xyz", "1000000000\n\nC 0 0 0\nO 1 0 0\n"),
+                   ":1: announces 1000000000 atoms, but only 2 rows follow", "correct the count");
+    expect_refused(folder.write("b.xyz", "-3\n\nC 0 0 0\n"), ":1: expected a number of atoms",
+                   "count");
+    expect_refused(folder.write("c.xyz", "99999999999999999999\n\nC 0 0 0\n"),
+                   ":1: expected a number of atoms", "count");
+    expect_refused(folder.write("d.xyz", "1\n\nC 0 0 0\nO 1 0 0\n"),
+                   ":4: expected a number of atoms, found 'O 1 0 0'", "that many rows");
+    expect_refused(folder.write("e.xyz", "0\n\n"), ": holds no atoms", "coordinates");
+    expect_refused(folder.write("f.xyz", "\n \n"), ": holds no atoms", "coordinates");
+}
+
+TEST(XyzReader, RefusesCoordinatesThatAreNoNumbers) {
+    const TemporaryFolder folder;
+    expect_refused(folder.write("a.xyz", "2\n\nC 0 0 0\nO 0 nan 0\n"),
+                   ":4: coordinate y 'nan' is not a number", "repair or remove the atom");
+    expect_refused(folder.write("b.xyz", "2\n\nC 0 0 0\nO 0 0 1e40\n"),
+                   ":4: coordinate z '1e40' is too large", "repair or remove the atom");
+    expect_refused(folder.write("c.xyz", "2\n\nC 0 0 0\nO 0 0\n"), ":4: the row has 3 of 4 columns",
+                   "fewer atoms");
+    expect_refused(folder.write("d.xyz", "1\n\n0.5 0 0 1\n"), ":3: expected an element symbol",
+                   "C, N or Fe");
+}
+
+TEST(XyzReader, ReturnsTheFrameThatIsAskedFor) {
+    const TemporaryFolder folder;
+    const auto file =
+        folder.write("a.xyz", "1\na\nC 0 0 0\n\n2\nb\nN 1 0 0\nO 2 0 0\n1\nc\nS 3 0 0");
+    EXPECT_EQ(read_file(file).frames, 3);
+    EXPECT_EQ(elements(read_file(file, {.frame = 1})), "NO");
+    EXPECT_EQ(elements(read_file(file, {.frame = 2})), "S");
+}
+
+TEST(XyzReader, LeavesOutALastFrameThatIsStillBeingWritten) {
+    const TemporaryFolder folder;
+    const auto file = folder.write("a.xyz", "1\na\nC 0 0 0\n2\nb\nN 1 0 0\n");
+    const FileContents contents = read_file(file);
+    EXPECT_EQ(contents.frames, 1);
+    ASSERT_EQ(contents.warnings.size(), 1u);
+    EXPECT_NE(contents.warnings[0].find("cut short"), std::string::npos);
+    expect_refused(file, ":4: announces 2 atoms, but only 1 rows follow", "cut", 1);
+}
+
+// ---- SDF ----
+
+TEST(SdfReader, ReturnsTheMoleculeThatIsAskedFor) {
+    const TemporaryFolder folder;
+    std::string second(kSdf);
+    second.replace(second.find(" O "), 3, " S ");
+    const auto file = folder.write("a.sdf", std::string(kSdf) + second + "\n");
+    EXPECT_EQ(read_file(file).frames, 2);
+    EXPECT_EQ(elements(read_file(file, {.frame = 1})), "CSHH");
+}
+
+TEST(SdfReader, NamesTheLineOfWhatIsWrong) {
+    const TemporaryFolder folder;
+    const auto with = [&](std::string_view old, std::string_view replacement) {
+        std::string text = std::string(kSdf) + std::string(kSdf);
+        text.replace(text.rfind(old), old.size(), replacement);
+        return folder.write("a.sdf", text);
+    };
+    expect_refused(with("    1.2000", "       nan"), ":19: coordinate x 'nan' is not a number",
+                   "repair or remove the atom", 1);
+    expect_refused(with("    1.2000", "*********"), ":19: coordinate x", "repair", 1);
+    expect_refused(with("    1.2000", "    1e20  "), ":19: coordinate x '1e20' is too large",
+                   "repair", 1);
+    expect_refused(with(" O   0", "     0"), ":19: the atom has no element", "repair", 1);
+    expect_refused(with("  1  4  1", "  1 99  1"), ":24: the bond names atom '99'", "repair", 1);
+    expect_refused(with("  4  3", "  5  3"), ":22: coordinate", "repair", 1);
+    expect_refused(with("  4  3", " -4  3"), ":17: expected the number of atoms, found '-4'",
+                   "repair", 1);
+    expect_refused(with("  4  3  0  0  0  0  0  0  0  0999 V2000", "  4"),
+                   ":17: the counts line '  4' is too short", "V2000", 1);
+    expect_refused(with("  1  4  1  0\nM  END\n$$$$\n", ""),
+                   ":23: the molecule ends inside its bonds", "copy the file again", 1);
+    EXPECT_EQ(refusal(with("  4  3", "  5  3"), 0), "(it was read)")
+        << "only molecule 1 is damaged";
+}
+
+TEST(SdfReader, NamesTheLineOfWhatIsWrongInV3000) {
+    const TemporaryFolder folder;
+    const auto with = [&](std::string_view old, std::string_view replacement) {
+        std::string text(kV3000);
+        text.replace(text.find(old), old.size(), replacement);
+        return folder.write("a.mol", text);
+    };
+    expect_refused(with("-0.6 0.9", "nan 0.9"), ":11: coordinate x 'nan'", "repair");
+    expect_refused(with("COUNTS 4", "COUNTS 3"), ":12: expected END ATOM after 3 atoms", "counts");
+    expect_refused(with("COUNTS 4", "COUNTS 5"), ":13: expected an atom", "announces 5 atoms");
+    expect_refused(with("COUNTS 4", "COUNTS x"), ":6: expected the number of atoms", "repair");
+    expect_refused(with("3 1 1 9", "3 1 1 8"), ":17: the bond names atom '8'", "repair");
+    expect_refused(with("M  V30 END ATOM", "END ATOM"), ":13: expected 'M  V30'", "copy");
+}
+
+TEST(SdfReader, SpendsNoTimeOnTheChemistryOfLargeMolecules) {
+    // Stereo perception over this sheet takes Open Babel a minute.
+    constexpr int kSide = 30;
+    std::string atoms;
+    std::string bonds;
+    for (int i = 0; i < kSide * kSide; ++i) {
+        atoms += fmt::format("{:10.4f}{:10.4f}{:10.4f} C   0  0\n", 1.4 * (i / kSide),
+                             1.4 * (i % kSide), 0.1 * (i % 7));
+        if (i + kSide < kSide * kSide)
+            bonds += fmt::format("{:3}{:3}  1  0\n", i + 1, i + 1 + kSide);
+    }
+    const TemporaryFolder folder;
+    const auto file = folder.write(
+        "a.sdf", fmt::format("sheet\n\n\n{:3}{:3}  0  0  0  0  0  0  0  0999 V2000\n{}{}M  END\n",
+                             kSide * kSide, kSide * (kSide - 1), atoms, bonds));
+    EXPECT_EQ(count(read_file(file), "atoms"), 900u);
+}
+
+TEST(SdfReader, CallsAtomsThatAreNoElementsUnknown) {
+    const TemporaryFolder folder;
+    std::string text(kSdf);
+    text.replace(text.find(" O   "), 5, " R#  ");
+    text.replace(text.find(" H   "), 5, " D   ");
+    const FileContents contents = read_file(folder.write("a.sdf", text));
+    EXPECT_EQ(elements(contents), "CXxHH");
+    EXPECT_EQ(contents.warnings.size(), 1u);
+}
+
+TEST(SdfReader, WarnsOfAFlatDrawing) {
+    const TemporaryFolder folder;
+    std::string text(kSdf);
+    text.replace(text.find("0.1000"), 6, "0.0000");
+    const FileContents contents = read_file(folder.write("a.sdf", text));
+    ASSERT_EQ(contents.warnings.size(), 1u);
+    EXPECT_NE(contents.warnings[0].find("flat drawing"), std::string::npos);
+}
+
+// ---- Real files ----
+
+struct RealFile {
+    const char* name;
+    std::uint64_t atoms;
+    int frames = 1;
+    int frame = 0;
+};
+
+TEST(RealMolecules, HaveTheAtomsThatTheirPagesCount) {
+    const RealFile files[] = {{"1crn.pdb", 327},
+                              {"1crn.cif", 327},
+                              {"1d66_dna_protein.pdb", 1762},
+                              {"1ffk_ribosome50S.cif.gz", 64281},
+                              {"1rb8_capsid_asu.pdb.gz", 5112},
+                              {"4hhb.cif.gz", 4779},
+                              {"4hhb.pdb", 4779},
+                              {"MOF-5.pdb", 65},
+                              {"acetaminophen_4a9k_TYL.sdf", 20},
+                              {"acetaminophen_gen3d.pdb", 20},
+                              {"acetaminophen_gen3d.sdf", 20},
+                              {"acetaminophen_gen3d.xyz", 20},
+                              {"aspirin.sdf", 21},
+                              {"caffeine_3rfm_CFF.sdf", 24},
+                              {"caffeine_3rfm_CFF.xyz", 24},
+                              {"extended_frames.xyz", 192, 3, 0},
+                              {"extended_frames.xyz", 62, 3, 1},
+                              {"extended_frames.xyz", 8, 3, 2},
+                              {"helium_traj.xyz.gz", 125, 397, 396},
+                              {"md_traj_51models.pdb.gz", 183, 51, 50},
+                              {"trajectory_small.xyz", 9, 2, 1}};
+    if (!std::filesystem::exists(data_file("molecules"))) GTEST_SKIP() << "no real files here";
+    for (const RealFile& file : files) {
+        SCOPED_TRACE(file.name);
+        const FileContents contents =
+            read_file(data_file("molecules") / file.name, {.frame = file.frame});
+        EXPECT_EQ(spheres(contents).spheres.size(), file.atoms);
+        EXPECT_EQ(count(contents, "atoms"), file.atoms);
+        EXPECT_EQ(contents.frames, file.frames);
+        EXPECT_EQ(elements(contents).find("("), std::string::npos);
+    }
+}
+
+TEST(RealMolecules, AgreeBetweenTheFormatsOfOneStructure) {
+    const std::filesystem::path folder = data_file("molecules");
+    if (!std::filesystem::exists(folder)) GTEST_SKIP() << "no real files here";
+    const auto agree = [&](const char* a, const char* b, double tolerance) {
+        SCOPED_TRACE(fmt::format("{} {}", a, b));
+        expect_same_spheres(read_file(folder / a), read_file(folder / b), tolerance);
+    };
+    agree("1crn.pdb", "1crn.cif", 1e-5);
+    agree("1crn.pdb", "broken/1crn_no_element_column.pdb", 0);
+    agree("acetaminophen_gen3d.xyz", "acetaminophen_gen3d.pdb", 2e-3);
+    agree("acetaminophen_gen3d.xyz", "acetaminophen_gen3d.sdf", 2e-4);
+    agree("caffeine_3rfm_CFF.xyz", "caffeine_3rfm_CFF.sdf", 2e-4);
+    const FileContents pdb = read_file(folder / "4hhb.pdb");
+    const FileContents mmcif = read_file(folder / "4hhb.cif.gz");
+    EXPECT_EQ(count(pdb, "residues"), count(mmcif, "residues"));
+    EXPECT_EQ(pdb.objects[0].part_names, mmcif.objects[0].part_names);
+}
+
+TEST(RealMolecules, AreRefusedWithAMessageWhereBroken) {
+    const std::filesystem::path folder = data_file("molecules/broken");
+    if (!std::filesystem::exists(folder)) GTEST_SKIP() << "no real files here";
+    const std::set<std::string> valid{"1crn_no_element_column.pdb", "1crn_unknown_element.pdb",
+                                      "coincident.xyz", "odd_start.pdb"};
+    const std::set<std::string> ours{".pdb", ".cif", ".xyz", ".sdf"};
+    for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+        const std::filesystem::path& file = entry.path();
+        if (!ours.contains(file.extension())) continue;
+        SCOPED_TRACE(file.filename());
+        const std::string message = refusal(file);
+        EXPECT_EQ(message == "(it was read)", valid.contains(file.filename())) << message;
+    }
+}
+
+TEST(RealMolecules, IncludeTheSample) {
+    const std::filesystem::path sample = INKTRACE_SOURCE_DIR "/samples/acetaminophen.xyz";
+    const FileContents contents = read_file(sample);
+    EXPECT_EQ(count(contents, "atoms"), 20u);
+    // Centred, long axis along x, ring facing z.
+    Bounds3d box;
+    Vec3d sum;
+    for (const Vec3d p : positions(contents)) {
+        box.add(p);
+        sum = sum + p;
+    }
+    EXPECT_LT(length(sum), 1e-2);
+    EXPECT_GT(box.extent().x, 1.5 * box.extent().y);
+    EXPECT_GT(box.extent().y, 2.0 * box.extent().z);
+}
+
+}  // namespace
+}  // namespace ink
