@@ -1,0 +1,242 @@
+// The only file that knows Embree. Written for version 3.13; version 4 differs in the include path
+// and in where intersection flags are passed.
+#if __has_include(<embree4/rtcore.h>)
+#include <embree4/rtcore.h>
+#else
+#include <embree3/rtcore.h>
+#endif
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <cstring>
+#include <string>
+#include <type_traits>
+
+#include "accel/tracer.h"
+#include "base/error.h"
+
+namespace ink {
+
+namespace {
+
+struct DeviceDeleter {
+    void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
+};
+struct SceneDeleter {
+    void operator()(RTCScene scene) const { rtcReleaseScene(scene); }
+};
+struct GeometryDeleter {
+    void operator()(RTCGeometry geometry) const { rtcReleaseGeometry(geometry); }
+};
+using DeviceHandle = std::unique_ptr<std::remove_pointer_t<RTCDevice>, DeviceDeleter>;
+using SceneHandle = std::unique_ptr<std::remove_pointer_t<RTCScene>, SceneDeleter>;
+using GeometryHandle = std::unique_ptr<std::remove_pointer_t<RTCGeometry>, GeometryDeleter>;
+
+void check(RTCDevice device) {
+    switch (rtcGetDeviceError(device)) {
+        case RTC_ERROR_NONE: return;
+        case RTC_ERROR_OUT_OF_MEMORY:
+            throw Error("the scene does not fit into memory; load less of it or use a larger machine");
+        case RTC_ERROR_UNSUPPORTED_CPU:
+            throw Error("this processor is too old for Embree, which needs SSE2 at least");
+        default: throw Error("Embree could not build its hierarchy over the scene");
+    }
+}
+
+/// Embree reads 16 bytes at every vertex, so the last of them must not end its page: shared buffers
+/// of 12-byte vertices need four bytes behind the end, which a vector's slack does not promise.
+GeometryHandle make_triangles(RTCDevice device, const Mesh& mesh) {
+    GeometryHandle geometry(rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE));
+    void* vertices = rtcSetNewGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_VERTEX, 0,
+                                             RTC_FORMAT_FLOAT3, sizeof(Vec3f), mesh.vertices.size());
+    check(device);
+    std::memcpy(vertices, mesh.vertices.data(), mesh.vertices.size() * sizeof(Vec3f));
+    rtcSetSharedGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
+                               mesh.triangles.data(), 0, sizeof(Mesh::Triangle),
+                               mesh.triangles.size());
+    return geometry;
+}
+
+GeometryHandle make_spheres(RTCDevice device, const Spheres& spheres) {
+    static_assert(sizeof(Sphere) == 16, "Embree reads a sphere as four floats");
+    GeometryHandle geometry(rtcNewGeometry(device, RTC_GEOMETRY_TYPE_SPHERE_POINT));
+    rtcSetSharedGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4,
+                               spheres.spheres.data(), 0, sizeof(Sphere), spheres.spheres.size());
+    return geometry;
+}
+
+PacketWidth widest_native(RTCDevice device) {
+    const auto native = [&](RTCDeviceProperty property) {
+        return rtcGetDeviceProperty(device, property) != 0;
+    };
+    if (native(RTC_DEVICE_PROPERTY_NATIVE_RAY16_SUPPORTED)) return PacketWidth::sixteen;
+    if (native(RTC_DEVICE_PROPERTY_NATIVE_RAY8_SUPPORTED)) return PacketWidth::eight;
+    return PacketWidth::one;
+}
+
+/// Copies lanes [first, first + Width) of a packet into Embree's layout of that width.
+template <class RayHit, int Width>
+void load(const RayPacket& rays, int first, RayHit& out) {
+    const auto copy = [&](auto* to, const auto& from) {
+        std::memcpy(to, from.data() + first, sizeof(*to) * Width);
+    };
+    copy(out.ray.org_x, rays.origin_x);
+    copy(out.ray.org_y, rays.origin_y);
+    copy(out.ray.org_z, rays.origin_z);
+    copy(out.ray.dir_x, rays.dir_x);
+    copy(out.ray.dir_y, rays.dir_y);
+    copy(out.ray.dir_z, rays.dir_z);
+    for (int i = 0; i < Width; ++i) {
+        out.ray.tnear[i] = 0.0F;
+        out.ray.time[i] = 0.0F;
+        out.ray.tfar[i] = kInfinity;
+        out.ray.mask[i] = ~0U;
+        out.ray.id[i] = 0;
+        out.ray.flags[i] = 0;
+        out.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
+        out.hit.primID[i] = RTC_INVALID_GEOMETRY_ID;
+        out.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
+    }
+}
+
+template <class RayHit, int Width>
+void store(const RayHit& in, int first, HitPacket& hits) {
+    const auto copy = [&](auto& to, const auto* from) {
+        std::memcpy(to.data() + first, from, sizeof(*from) * Width);
+    };
+    copy(hits.t, in.ray.tfar);
+    copy(hits.normal_x, in.hit.Ng_x);
+    copy(hits.normal_y, in.hit.Ng_y);
+    copy(hits.normal_z, in.hit.Ng_z);
+    copy(hits.u, in.hit.u);
+    copy(hits.v, in.hit.v);
+    copy(hits.primitive, in.hit.primID);
+    copy(hits.object, in.hit.geomID);
+}
+
+class EmbreeTracer final : public Tracer {
+  public:
+    EmbreeTracer(const Scene& scene, PacketWidth width) : device_(rtcNewDevice(nullptr)) {
+        check(device_.get());
+        width_ = width == PacketWidth::widest ? widest_native(device_.get()) : width;
+        scene_.reset(rtcNewScene(device_.get()));
+        for (const Object& object : scene.objects()) attach(object);
+        rtcCommitScene(scene_.get());
+        check(device_.get());
+    }
+
+    void intersect(std::span<const RayPacket> rays, std::span<HitPacket> hits,
+                   Coherence coherence) const override {
+        switch (width_) {
+            case PacketWidth::sixteen:
+                return trace<RTCRayHit16, 16>(rays, hits, coherence, [](auto&&... arguments) {
+                    rtcIntersect16(arguments...);
+                });
+            case PacketWidth::eight:
+                return trace<RTCRayHit8, 8>(rays, hits, coherence, [](auto&&... arguments) {
+                    rtcIntersect8(arguments...);
+                });
+            default: return trace_single(rays, hits, coherence);
+        }
+    }
+
+  private:
+    void attach(const Object& object) {
+        const GeometryHandle geometry = std::visit(
+            [&](const auto& shape) {
+                if constexpr (std::is_same_v<std::decay_t<decltype(shape)>, Spheres>) {
+                    return make_spheres(device_.get(), shape);
+                } else {
+                    return make_triangles(device_.get(), shape);
+                }
+            },
+            object.shape);
+        check(device_.get());
+        rtcCommitGeometry(geometry.get());
+        rtcAttachGeometry(scene_.get(), geometry.get());
+    }
+
+#if RTC_VERSION_MAJOR >= 4
+    static RTCIntersectArguments arguments(Coherence coherence) {
+        RTCIntersectArguments args;
+        rtcInitIntersectArguments(&args);
+        if (coherence == Coherence::coherent) args.flags = RTC_RAY_QUERY_FLAG_COHERENT;
+        return args;
+    }
+#else
+    static RTCIntersectContext arguments(Coherence coherence) {
+        RTCIntersectContext context;
+        rtcInitIntersectContext(&context);
+        if (coherence == Coherence::coherent) context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+        return context;
+    }
+#endif
+
+    template <class RayHit, int Width, class Kernel>
+    void trace(std::span<const RayPacket> rays, std::span<HitPacket> hits, Coherence coherence,
+               const Kernel& kernel) const {
+        auto args = arguments(coherence);
+        alignas(64) RayHit packet{};  // Embree leaves the hit of a ray that misses as it was
+        for (std::size_t k = 0; k < rays.size(); ++k) {
+            for (int first = 0; first < kLanes; first += Width) {
+                load<RayHit, Width>(rays[k], first, packet);
+#if RTC_VERSION_MAJOR >= 4
+                kernel(rays[k].active.data() + first, scene_.get(), &packet, &args);
+#else
+                kernel(rays[k].active.data() + first, scene_.get(), &args, &packet);
+#endif
+                store<RayHit, Width>(packet, first, hits[k]);
+            }
+        }
+    }
+
+    void trace_single(std::span<const RayPacket> rays, std::span<HitPacket> hits,
+                      Coherence coherence) const {
+        auto args = arguments(coherence);
+        for (std::size_t k = 0; k < rays.size(); ++k) {
+            for (int lane = 0; lane < kLanes; ++lane) {
+                RTCRayHit single{};
+                single.ray.org_x = rays[k].origin_x[lane];
+                single.ray.org_y = rays[k].origin_y[lane];
+                single.ray.org_z = rays[k].origin_z[lane];
+                single.ray.dir_x = rays[k].dir_x[lane];
+                single.ray.dir_y = rays[k].dir_y[lane];
+                single.ray.dir_z = rays[k].dir_z[lane];
+                single.ray.tfar = kInfinity;
+                single.ray.mask = ~0U;
+                single.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+                single.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+                if (rays[k].active[lane] != 0) {
+#if RTC_VERSION_MAJOR >= 4
+                    rtcIntersect1(scene_.get(), &single, &args);
+#else
+                    rtcIntersect1(scene_.get(), &args, &single);
+#endif
+                }
+                hits[k].t[lane] = single.ray.tfar;
+                hits[k].normal_x[lane] = single.hit.Ng_x;
+                hits[k].normal_y[lane] = single.hit.Ng_y;
+                hits[k].normal_z[lane] = single.hit.Ng_z;
+                hits[k].u[lane] = single.hit.u;
+                hits[k].v[lane] = single.hit.v;
+                hits[k].primitive[lane] = single.hit.primID;
+                hits[k].object[lane] = single.hit.geomID;
+            }
+        }
+    }
+
+    DeviceHandle device_;
+    SceneHandle scene_;
+    PacketWidth width_ = PacketWidth::one;
+};
+
+static_assert(RTC_INVALID_GEOMETRY_ID == kNoObject);
+
+}  // namespace
+
+std::unique_ptr<Tracer> make_embree_tracer(const Scene& scene, PacketWidth width) {
+    return std::make_unique<EmbreeTracer>(scene, width);
+}
+
+}  // namespace ink

@@ -1,0 +1,209 @@
+#include "camera/camera.h"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <mutex>
+#include <numbers>
+#include <variant>
+
+#include "base/error.h"
+#include "base/parallel.h"
+#include "camera/principal_axes.h"
+
+namespace ink {
+
+namespace {
+
+struct Axes {
+    Vec3d back, up;
+};
+
+Axes standard_axes(View view) {
+    switch (view) {
+        case View::back: return {{0, 0, -1}, {0, 1, 0}};
+        case View::left: return {{-1, 0, 0}, {0, 1, 0}};
+        case View::right: return {{1, 0, 0}, {0, 1, 0}};
+        case View::top: return {{0, 1, 0}, {0, 0, -1}};
+        case View::bottom: return {{0, -1, 0}, {0, 0, 1}};
+        case View::iso: return {{1, 1, 1}, {0, 1, 0}};
+        default: return {{0, 0, 1}, {0, 1, 0}};
+    }
+}
+
+Axes automatic_axes(const Scene& scene) {
+    const bool has_mesh = std::ranges::any_of(
+        scene.objects(), [](const Object& object) { return object.kind == ObjectKind::mesh; });
+    // 30 degrees to the side, 20 above: three faces of a box show, each with an area of its own.
+    if (has_mesh) return {{0.46985, 0.34202, 0.81380}, {0, 1, 0}};
+    const PrincipalAxes axes = principal_axes(scene);
+    return {axes.shortest, axes.middle};
+}
+
+constexpr std::size_t kGrain = 1 << 15;
+
+/// Smallest value of dot(normal, p) over every point p of the scene, for each of four normals.
+std::array<double, 4> supports(const Scene& scene, const std::array<Vec3f, 4>& normals) {
+    constexpr double kMax = std::numeric_limits<double>::max();
+    std::array<double, 4> least{kMax, kMax, kMax, kMax};
+    std::mutex mutex;
+    const auto reduce = [&](std::size_t count, const auto& value) {
+        parallel_ranges(count, kGrain, [&](std::size_t begin, std::size_t end) {
+            std::array<float, 4> part{kInfinity, kInfinity, kInfinity, kInfinity};
+            for (std::size_t i = begin; i < end; ++i) {
+                for (std::size_t k = 0; k < 4; ++k) {
+                    part[k] = std::min(part[k], value(normals[k], i));
+                }
+            }
+            const std::scoped_lock lock(mutex);
+            for (std::size_t k = 0; k < 4; ++k) least[k] = std::min<double>(least[k], part[k]);
+        });
+    };
+    for (const Object& object : scene.objects()) {
+        if (const auto* shape = std::get_if<Spheres>(&object.shape)) {
+            reduce(shape->spheres.size(), [&](Vec3f n, std::size_t i) {
+                return dot(n, shape->spheres[i].centre) - shape->spheres[i].radius;
+            });
+        } else {
+            const auto& mesh = std::get<Mesh>(object.shape);
+            reduce(mesh.vertices.size(),
+                   [&](Vec3f n, std::size_t i) { return dot(n, mesh.vertices[i]); });
+        }
+    }
+    return least;
+}
+
+/// A vector at a right angle to `back`, near `up` where that is possible.
+Vec3d upright(Vec3d back, Vec3d up) {
+    Vec3d side = cross(up, back);
+    if (dot(side, side) < 1e-12 * dot(up, up)) {
+        side = cross(std::abs(back.y) < 0.9 ? Vec3d{0, 1, 0} : Vec3d{0, 0, -1}, back);
+    }
+    return normalize(cross(back, normalize(side)));
+}
+
+}  // namespace
+
+Camera::Camera(const Scene& scene, const ViewSettings& settings, Size size)
+    : orthographic_(settings.orthographic.has_value()) {
+    orient(scene, settings);
+    place(scene, settings, size);
+    lay_plane(scene, size);
+    world_eye_ = scene.frame().origin + eye_ * scene.frame().unit;
+}
+
+void Camera::orient(const Scene& scene, const ViewSettings& settings) {
+    Axes axes = settings.view == View::automatic && !settings.eye ? automatic_axes(scene)
+                                                                  : standard_axes(settings.view);
+    world_look_at_ = settings.look_at.value_or(scene.frame().origin);
+    if (settings.eye) {
+        axes = {*settings.eye - world_look_at_, {0, 1, 0}};
+        if (!(length(axes.back) > 0.0)) {
+            throw UsageError("--eye and --look-at are the same point; move one of them");
+        }
+    }
+    if (settings.up) axes.up = *settings.up;
+    if (!(length(axes.up) > 0.0)) throw UsageError("--up has no length; use for example 0,1,0");
+    back_ = normalize(axes.back);
+    up_ = upright(back_, axes.up);
+    right_ = cross(up_, back_);
+}
+
+void Camera::place(const Scene& scene, const ViewSettings& settings, Size size) {
+    const double aspect = static_cast<double>(size.width) / size.height;
+    const double fit = 1.0 - 2.0 * settings.margin;
+    const double tan_y = std::tan(settings.fov_deg * std::numbers::pi / 360.0);
+    half_height_ = orthographic_ ? *settings.orthographic * 0.5 / scene.frame().unit : tan_y;
+
+    const auto to_scene = [&](Vec3d world) {
+        return (world - scene.frame().origin) / scene.frame().unit;
+    };
+    if (settings.eye && (!orthographic_ || half_height_ > 0.0)) {
+        eye_ = to_scene(*settings.eye);
+        return;
+    }
+
+    // The four planes through the eye that bound the picture less its margin must have the whole
+    // scene on their inner side; `reach` says how near each can come. In orthographic projection
+    // the planes are parallel in pairs.
+    const double slope_x = orthographic_ ? 0.0 : tan_y * aspect * fit;
+    const double slope_y = orthographic_ ? 0.0 : tan_y * fit;
+    const double norm_x = std::hypot(1.0, slope_x);
+    const double norm_y = std::hypot(1.0, slope_y);
+    const std::array<Vec3f, 4> normals{to_float((right_ - back_ * slope_x) / norm_x),
+                                       to_float((-right_ - back_ * slope_x) / norm_x),
+                                       to_float((up_ - back_ * slope_y) / norm_y),
+                                       to_float((-up_ - back_ * slope_y) / norm_y)};
+    const std::array<double, 4> reach = supports(scene, normals);
+    const double x = (reach[0] - reach[1]) * norm_x * 0.5;
+    const double y = (reach[2] - reach[3]) * norm_y * 0.5;
+    double z = 0.0;
+    if (orthographic_) {
+        const double half_width = -(reach[0] + reach[1]) * 0.5;
+        const double needed = std::max(-(reach[2] + reach[3]) * 0.5, half_width / aspect) / fit;
+        if (!(half_height_ > 0.0)) half_height_ = needed > 0.0 ? needed : 1.0;
+        z = 2.0;
+    } else {
+        z = std::max(-(reach[0] + reach[1]) * norm_x / (2.0 * slope_x),
+                     -(reach[2] + reach[3]) * norm_y / (2.0 * slope_y));
+    }
+    eye_ = right_ * x + up_ * y + back_ * z;
+    if (settings.look_at) {
+        const Vec3d target = to_scene(*settings.look_at);
+        eye_ = target + back_ * std::max(dot(eye_ - target, back_), 1e-3);
+    }
+    if (settings.eye) eye_ = to_scene(*settings.eye);
+}
+
+void Camera::lay_plane(const Scene& scene, Size size) {
+    const double pixel = 2.0 * half_height_ / size.height;
+    const Vec3d step_x = right_ * pixel;
+    const Vec3d step_y = up_ * -pixel;
+    const Vec3d to_corner = step_x * (-0.5 * size.width) + step_y * (-0.5 * size.height);
+
+    double nearest = std::numeric_limits<double>::max();
+    for (int k = 0; k < 8; ++k) {
+        nearest = std::min(nearest, -dot(to_double(scene.bounds().corner(k)) - eye_, back_));
+    }
+    // A hair before the scene, so that no surface starts behind its ray.
+    start_depth_ = nearest - 1e-3;
+    if (!orthographic_) start_depth_ = std::max(start_depth_, 0.0);
+
+    const Vec3d ahead = eye_ - back_ * start_depth_;
+    if (orthographic_) {
+        origin_ = to_float(ahead + to_corner);
+        origin_dx_ = to_float(step_x);
+        origin_dy_ = to_float(step_y);
+        dir_ = to_float(-back_);
+    } else {
+        origin_ = to_float(ahead + to_corner * start_depth_);
+        origin_dx_ = to_float(step_x * start_depth_);
+        origin_dy_ = to_float(step_y * start_depth_);
+        dir_ = to_float(to_corner - back_);
+        dir_dx_ = to_float(step_x);
+        dir_dy_ = to_float(step_y);
+    }
+
+    constexpr float kMax = std::numeric_limits<float>::max();
+    scene_box_ = {kMax, kMax, -kMax, -kMax};
+    for (int k = 0; k < 8; ++k) {
+        const Vec3d p = to_double(scene.bounds().corner(k)) - eye_;
+        const double depth = -dot(p, back_);
+        if (!orthographic_ && depth < 1e-6) {  // beside or behind the eye: anywhere on the screen
+            scene_box_ = {-kMax, -kMax, kMax, kMax};
+            return;
+        }
+        const double scale = 1.0 / (orthographic_ ? pixel : pixel * depth);
+        const auto x = static_cast<float>(0.5 * size.width + dot(p, right_) * scale);
+        const auto y = static_cast<float>(0.5 * size.height - dot(p, up_) * scale);
+        scene_box_ = {std::min(scene_box_.left, x - 1), std::min(scene_box_.top, y - 1),
+                      std::max(scene_box_.right, x + 1), std::max(scene_box_.bottom, y + 1)};
+    }
+}
+
+float Camera::distance_from_eye(Vec2f point, float t) const {
+    const Vec3f d = dir_ + dir_dx_ * point.x + dir_dy_ * point.y;
+    return t + static_cast<float>(start_depth_) * length(d);
+}
+
+}  // namespace ink

@@ -1,0 +1,94 @@
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <optional>
+
+#include "accel/tracer.h"
+#include "base/image.h"
+#include "base/lanes.h"
+#include "base/multiversion.h"
+#include "base/vec.h"
+#include "scene/scene.h"
+
+namespace ink {
+
+/// From where the scene is seen. `automatic` looks at molecules and particles along their shortest
+/// principal axis, so that they show their broad side, and at everything else from a little above
+/// and to the side.
+enum class View : std::uint8_t { automatic, front, back, left, right, top, bottom, iso };
+
+/// Where the camera stands. What is left open is chosen so that the scene fills the picture.
+struct ViewSettings {
+    View view = View::automatic;
+    std::optional<Vec3d> eye;      ///< world
+    std::optional<Vec3d> look_at;  ///< world; default: the middle of the scene
+    std::optional<Vec3d> up;       ///< world direction
+    double fov_deg = 30.0;         ///< vertical field of view, in (0, 170]
+    /// Orthographic projection: height of the view in world units; 0: fitted to the scene.
+    std::optional<double> orthographic;
+    double margin = 0.04;  ///< of the picture's height and width left free on each side, [0, 0.45]
+};
+
+/// Turns screen points into rays. Rays start on a plane just before the scene, not at the eye: the
+/// origins are then small numbers, and a scene seen from very far keeps all its digits.
+class Camera {
+  public:
+    /// Throws UsageError where the settings contradict each other.
+    Camera(const Scene& scene, const ViewSettings& settings, Size size);
+
+    /// Rays through sixteen points of the screen, in pixels. Directions have unit length.
+    INKTRACE_INLINE void make_rays(const Lanes<float>& x, const Lanes<float>& y,
+                                   RayPacket& rays) const;
+    /// Distance from the eye (perspective) or the camera plane (orthographic) of a hit at `t` along
+    /// the ray through a screen point.
+    float distance_from_eye(Vec2f point, float t) const;
+
+    Vec3f right() const { return to_float(right_); }  ///< unit, scene frame
+    Vec3f up() const { return to_float(up_); }        ///< unit, scene frame
+    Vec3f back() const { return to_float(back_); }    ///< unit, towards the viewer
+
+    /// The part of the screen, in pixels, outside of which no ray can hit the scene.
+    struct ScreenBox {
+        float left, top, right, bottom;
+    };
+    const ScreenBox& scene_box() const { return scene_box_; }
+
+    Vec3d world_eye() const { return world_eye_; }
+    Vec3d world_look_at() const { return world_look_at_; }
+
+  private:
+    struct Basis;
+    void orient(const Scene& scene, const ViewSettings& settings);
+    void place(const Scene& scene, const ViewSettings& settings, Size size);
+    void lay_plane(const Scene& scene, Size size);
+
+    Vec3d right_, up_, back_;  ///< right-handed, orthonormal, scene frame
+    Vec3d eye_;                ///< scene frame
+    bool orthographic_ = false;
+    double half_height_ = 0.0;  ///< of the view: tan(fov / 2), or scene units
+    double start_depth_ = 0.0;  ///< of the plane that rays start on, along -back
+
+    // origin = origin_ + x * origin_dx_ + y * origin_dy_, the direction likewise, then normalised
+    Vec3f origin_, origin_dx_, origin_dy_;
+    Vec3f dir_, dir_dx_, dir_dy_;
+    ScreenBox scene_box_{};
+    Vec3d world_eye_, world_look_at_;
+};
+
+void Camera::make_rays(const Lanes<float>& x, const Lanes<float>& y, RayPacket& rays) const {
+    for (int i = 0; i < kLanes; ++i) {
+        rays.origin_x[i] = origin_.x + x[i] * origin_dx_.x + y[i] * origin_dy_.x;
+        rays.origin_y[i] = origin_.y + x[i] * origin_dx_.y + y[i] * origin_dy_.y;
+        rays.origin_z[i] = origin_.z + x[i] * origin_dx_.z + y[i] * origin_dy_.z;
+        const float dx = dir_.x + x[i] * dir_dx_.x + y[i] * dir_dy_.x;
+        const float dy = dir_.y + x[i] * dir_dx_.y + y[i] * dir_dy_.y;
+        const float dz = dir_.z + x[i] * dir_dx_.z + y[i] * dir_dy_.z;
+        const float scale = 1.0F / std::sqrt(dx * dx + dy * dy + dz * dz);
+        rays.dir_x[i] = dx * scale;
+        rays.dir_y[i] = dy * scale;
+        rays.dir_z[i] = dz * scale;
+    }
+}
+
+}  // namespace ink

@@ -1,0 +1,94 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+#include "base/color.h"
+#include "base/image.h"
+#include "base/lanes.h"
+#include "shading/shading.h"
+
+namespace ink {
+
+/// Which of shading and lines reach the picture (the three panels of the paper's Figure 1).
+enum class Compose : std::uint8_t {
+    shaded,  ///< no lines
+    lines,   ///< lines alone, on white
+    both
+};
+
+/// The values in which a line is mixed with the colour below it.
+enum class BlendSpace : std::uint8_t {
+    display,  ///< sRGB-encoded, as every 2D program does
+    linear
+};
+
+struct FilmSettings {
+    Compose compose = Compose::both;
+    BlendSpace blend = BlendSpace::display;
+    Rgb8 line_color{0, 0, 0};
+    Rgb8 background{255, 255, 255};
+    bool transparent_background = false;
+    bool display = true;  ///< make 8-bit sRGB pixels
+    bool linear = false;  ///< make linear float pixels
+};
+
+/// Samples of sixteen pixels on their way to the film. Sums over samples, so that their mean can be
+/// taken in linear light while lines are mixed in the blend space.
+struct PixelSums {
+    ColorPacket shaded{};   ///< linear, premultiplied
+    ColorPacket covered{};  ///< what ink hides: strength times colour in the blend space
+    Lanes<float> ink{};     ///< line strength
+    int samples = 0;
+};
+
+/// The picture while it is rendered. Blocks of 4 x 4 pixels are disjoint, so threads need no lock;
+/// pixels of a block beyond the film's edge are dropped.
+class Film {
+  public:
+    Film(Size size, const FilmSettings& settings);
+
+    Size size() const { return size_; }
+
+    /// Adds one sample a pixel: its colour and its line strength in [0, 1].
+    void add(const ColorPacket& shaded, const Lanes<float>& strength, PixelSums& sums) const;
+    /// Finishes the block whose upper left pixel is (x, y): per sample, c = mix(c_s, line colour, e)
+    /// (Choudhury and Parker 2009, section 3.2); per pixel, the mean of its samples.
+    void put(int x, int y, const PixelSums& sums);
+    /// The same for a single sample a pixel without lines.
+    void put(int x, int y, const ColorPacket& shaded);
+    /// The same where there is nothing but background.
+    void put_background(int x, int y) { store(x, y, background_); }
+
+    /// Adds a plane for data beside the colour; returns its index.
+    template <class T>
+    std::size_t add_plane(std::string name);
+    /// Writes a block of a plane.
+    template <class T>
+    void put_plane(std::size_t plane, int x, int y, const Lanes<T>& values);
+
+    const DisplayImage& display() const { return display_; }    ///< empty unless asked for
+    const ChannelImage& channels() const { return channels_; }  ///< R G B A if linear, then planes
+
+  private:
+    /// A finished block.
+    struct Block {
+        ColorPacket linear;           ///< if linear pixels are wanted
+        Lanes<std::uint32_t> display;  ///< if display pixels are
+    };
+
+    ColorPacket paper(const ColorPacket& shaded) const;
+    void finish(ColorPacket& blended, Block& block) const;
+    void store(int x, int y, const Block& block);
+
+    Size size_;
+    FilmSettings settings_;
+    Color line_;  ///< in the blend space
+    DisplayImage display_;
+    ChannelImage channels_;
+    Block background_{};
+};
+
+}  // namespace ink

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "accel/tracer.h"
+#include "camera/camera.h"
+#include "film/film.h"
+#include "render/settings.h"
+#include "sampling/line_ids.h"
+#include "sampling/sampler.h"
+#include "scene/scene.h"
+
+namespace ink {
+
+/// Writes what the sample rays saw, as numbers beside the picture. With several samples a pixel,
+/// the first one's: identities and depths have no mean.
+class AovWriter {
+  public:
+    /// Adds the planes of `aovs` to the film: id.primitive, id.part, id.object (0: background); Z
+    /// (distance along the ray, world units); N.X, N.Y, N.Z (geometric, facing the viewer); P.X,
+    /// P.Y, P.Z (world); line.A (line strength).
+    AovWriter(const Scene& scene, const Camera& camera, const std::vector<Aov>& aovs, Film& film);
+
+    void put(Block block, Vec2f offset, const HitPacket& hits, const Lanes<float>& strength) const;
+
+  private:
+    void put_ids(Block block, const HitPacket& hits) const;
+    void put_depths(Block block, Vec2f offset, const HitPacket& hits) const;
+    void put_normals(Block block, const HitPacket& hits) const;
+    void put_positions(Block block, Vec2f offset, const HitPacket& hits) const;
+
+    struct IdPlane {
+        std::size_t plane;
+        LineIds ids;
+    };
+
+    const Frame& frame_;
+    const Camera& camera_;
+    Film& film_;
+    std::vector<IdPlane> ids_;
+    std::optional<std::size_t> depth_, normal_, position_, lines_;  ///< first plane of each
+};
+
+}  // namespace ink

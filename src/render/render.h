@@ -1,0 +1,46 @@
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <functional>
+
+#include "accel/tracer.h"
+#include "film/film.h"
+#include "render/settings.h"
+#include "scene/scene.h"
+
+namespace ink {
+
+/// How the caller follows a render and ends it early.
+struct RenderControl {
+    /// Called with the share of the picture that is done, in (0, 1], from the rendering threads,
+    /// one at a time.
+    std::function<void(double)> progress;
+    /// Looked at before each tile; once true, `render` throws Cancelled.
+    const std::atomic<bool>* cancel = nullptr;
+};
+
+/// What a render took. Times are wall time; those of phases are summed over threads and divided by
+/// their number.
+struct RenderStats {
+    double render_ms = 0.0;  ///< from the built scene to the finished pixels
+    double trace_ms = 0.0;   ///< sample rays
+    double lines_ms = 0.0;   ///< stencil rays and edge strengths
+    double shade_ms = 0.0;   ///< shading, compositing, pixels
+    std::uint64_t rays = 0;
+    int threads = 0;
+};
+
+/// Which pixels to make: for a screen or an 8-bit file, and for an EXR.
+struct PixelFormats {
+    bool display = true;
+    bool linear = false;
+};
+
+/// Renders the scene, of which `tracer` must have been made. The same arguments give the same bytes,
+/// whatever the number of threads and the size of tiles.
+Film render(const Scene& scene, const Tracer& tracer, const Settings& settings,
+            const PixelFormats& formats = {}, const RenderControl& control = {},
+            RenderStats* stats = nullptr);
+
+}  // namespace ink

@@ -1,0 +1,358 @@
+#include "render/settings.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "base/error.h"
+#include "base/text.h"
+
+namespace ink {
+
+double Length::pixels(double dpi, int picture_height) const {
+    switch (unit) {
+        case Unit::px: return value;
+        case Unit::pt: return value * dpi / 72.0;
+        case Unit::mm: return value * dpi / 25.4;
+        case Unit::percent: return value * picture_height / 100.0;
+    }
+    return value;
+}
+
+namespace {
+
+// Readers and printers of values. Readers throw UsageError without the setting's name; Table adds
+// it.
+
+double read_number(std::string_view text, double least, double most) {
+    const auto value = parse_double(text);
+    if (!value || !(*value >= least) || !(*value <= most)) {
+        throw UsageError(fmt::format("'{}' is not a number from {} to {}", text, least, most));
+    }
+    return *value;
+}
+
+int read_int(std::string_view text, int least, int most) {
+    const auto value = parse_int(text);
+    if (!value || *value < least || *value > most) {
+        throw UsageError(fmt::format("'{}' is not a whole number from {} to {}", text, least, most));
+    }
+    return static_cast<int>(*value);
+}
+
+Rgb8 read_color(std::string_view text) {
+    const auto color = parse_color(text);
+    if (!color) {
+        throw UsageError(fmt::format(
+            "'{}' is not a colour; write a name such as white, #rrggbb, or r,g,b from 0 to 255", text));
+    }
+    return *color;
+}
+
+Size read_size(std::string_view text) {
+    // libpng, libtiff and libjpeg agree on this much; memory is checked with the other settings.
+    constexpr int kMost = 65500;
+    const auto sides = split(text, 'x');
+    if (sides.size() != 2) {
+        throw UsageError(fmt::format("'{}' is not a size; write WIDTHxHEIGHT, as in 1024x768", text));
+    }
+    const auto side = [&](std::string_view part) {
+        const auto value = parse_int(part);
+        if (!value || *value < 1 || *value > kMost) {
+            throw UsageError(fmt::format("'{}' has a side that is not from 1 to {} pixels", text, kMost));
+        }
+        return static_cast<int>(*value);
+    };
+    return {side(sides[0]), side(sides[1])};
+}
+
+Vec3d read_vector(std::string_view text) {
+    const auto parts = split(text, ',');
+    std::array<double, 3> v{};
+    bool good = parts.size() == 3;
+    for (std::size_t i = 0; good && i < 3; ++i) {
+        const auto value = parse_double(parts[i]);
+        good = value && std::isfinite(*value);
+        if (good) v[i] = *value;
+    }
+    if (!good) throw UsageError(fmt::format("'{}' is not a vector; write X,Y,Z, as in 0,1,0", text));
+    return {v[0], v[1], v[2]};
+}
+
+std::string print(Vec3d v) { return fmt::format("{},{},{}", v.x, v.y, v.z); }
+
+constexpr std::array<std::string_view, 4> kUnitNames{"px", "pt", "mm", "%"};
+
+Length read_length(std::string_view text) {
+    Length length;
+    std::string_view number = trim(text);
+    for (std::size_t unit = 0; unit < kUnitNames.size(); ++unit) {
+        if (!number.ends_with(kUnitNames[unit])) continue;
+        number.remove_suffix(kUnitNames[unit].size());
+        length.unit = static_cast<Length::Unit>(unit);
+        break;
+    }
+    const auto value = parse_double(number);
+    if (!value || !(*value > 0.0) || !std::isfinite(*value)) {
+        throw UsageError(fmt::format(
+            "'{}' is not a width; write a positive number with px, pt, mm or %, as in 2px or 0.5pt", text));
+    }
+    length.value = *value;
+    return length;
+}
+
+/// A closed list of words and what they stand for.
+template <class T>
+struct Words {
+    std::vector<std::pair<std::string_view, T>> entries;
+
+    T read(std::string_view text) const {
+        for (const auto& [word, value] : entries) {
+            if (word == text) return value;
+        }
+        std::vector<std::string_view> words;
+        for (const auto& entry : entries) words.push_back(entry.first);
+        throw UsageError(fmt::format("'{}' is not one of {}", text, fmt::join(words, ", ")));
+    }
+    std::string print(T value) const {
+        for (const auto& [word, entry] : entries) {
+            if (entry == value) return std::string(word);
+        }
+        return {};
+    }
+    /// A comma-separated list; "none" is the empty one, "all" every word.
+    std::vector<T> read_list(std::string_view text) const {
+        std::vector<T> list;
+        if (text == "none") return list;
+        if (text == "all") {
+            for (const auto& entry : entries) list.push_back(entry.second);
+            return list;
+        }
+        for (const std::string_view word : split(text, ',')) {
+            const T value = read(word);
+            if (std::ranges::find(list, value) == list.end()) list.push_back(value);
+        }
+        return list;
+    }
+    std::string print_list(const std::vector<T>& list) const {
+        if (list.empty()) return "none";
+        std::vector<std::string> words;
+        for (const T value : list) words.push_back(print(value));
+        return fmt::format("{}", fmt::join(words, ","));
+    }
+};
+
+const Words<View> kViews{{{"auto", View::automatic}, {"front", View::front}, {"back", View::back},
+                          {"left", View::left}, {"right", View::right}, {"top", View::top},
+                          {"bottom", View::bottom}, {"iso", View::iso}}};
+const Words<Method> kMethods{{{"stencil", Method::stencil}}};
+const Words<LineType> kLineTypes{
+    {{"silhouette", LineType::silhouette}, {"intersection", LineType::intersection}}};
+const Words<IdLevel> kIdLevels{
+    {{"primitive", IdLevel::primitive}, {"part", IdLevel::part}, {"object", IdLevel::object}}};
+const Words<Compose> kComposes{
+    {{"shaded", Compose::shaded}, {"lines", Compose::lines}, {"both", Compose::both}}};
+const Words<ShadeMode> kShadeModes{{{"lambert", ShadeMode::lambert}, {"toon", ShadeMode::toon},
+                                    {"flat", ShadeMode::flat}, {"none", ShadeMode::none}}};
+const Words<LineBlend> kBlends{{{"auto", LineBlend::automatic}, {"display", LineBlend::display},
+                                {"linear", LineBlend::linear}}};
+const Words<Aov> kAovs{{{"id", Aov::id}, {"depth", Aov::depth}, {"normal", Aov::normal},
+                        {"position", Aov::position}, {"lines", Aov::lines}}};
+
+Metric read_metric(std::string_view text) {
+    if (text == "linear") return {Metric::Kind::linear};
+    if (text == "solid") return {Metric::Kind::solid};
+    if (text == "power") return {Metric::Kind::power};
+    if (text.starts_with("power:")) {
+        return {Metric::Kind::power, read_number(text.substr(6), 1.0, 1000.0)};
+    }
+    throw UsageError(fmt::format("'{}' is not one of linear, power:P, solid", text));
+}
+
+std::string print(const Metric& metric) {
+    switch (metric.kind) {
+        case Metric::Kind::linear: return "linear";
+        case Metric::Kind::power: return fmt::format("power:{}", metric.exponent);
+        case Metric::Kind::solid: return "solid";
+    }
+    return {};
+}
+
+AntiAliasing read_aa(std::string_view text) {
+    if (text == "none") return {AntiAliasing::Kind::none, 1};
+    if (text == "stencil") return {AntiAliasing::Kind::stencil, 1};
+    if (text.starts_with("multisample:")) {
+        return {AntiAliasing::Kind::multisample, read_int(text.substr(12), 1, 4096)};
+    }
+    throw UsageError(fmt::format("'{}' is not one of none, stencil, multisample:S", text));
+}
+
+std::string print(const AntiAliasing& aa) {
+    switch (aa.kind) {
+        case AntiAliasing::Kind::none: return "none";
+        case AntiAliasing::Kind::stencil: return "stencil";
+        case AntiAliasing::Kind::multisample: return fmt::format("multisample:{}", aa.samples);
+    }
+    return {};
+}
+
+void read_background(Settings& settings, std::string_view text) {
+    settings.shading.transparent_background = text == "transparent";
+    if (!settings.shading.transparent_background) settings.shading.background = read_color(text);
+}
+
+std::vector<Setting> make_table() {
+    using S = Settings;
+    using Text = std::string_view;
+    return {
+        {"size", "Picture", "WxH", "Width and height in pixels",
+         [](S& s, Text t) { s.size = read_size(t); },
+         [](const S& s) { return fmt::format("{}x{}", s.size.width, s.size.height); }},
+        {"dpi", "Picture", "D", "Pixels per inch: what pt and mm mean, and how large the picture prints",
+         [](S& s, Text t) { s.dpi = read_number(t, 1, 100000); },
+         [](const S& s) { return fmt::format("{}", s.dpi); }},
+        {"background", "Picture", "COLOR", "Colour behind the scene, or transparent", read_background,
+         [](const S& s) {
+             return s.shading.transparent_background ? "transparent" : to_string(s.shading.background);
+         }},
+        {"compose", "Picture", "WHAT", "What to draw: shaded (no lines), lines (alone, on white) or both",
+         [](S& s, Text t) { s.compose = kComposes.read(t); },
+         [](const S& s) { return kComposes.print(s.compose); }},
+        {"aov", "Picture", "LIST",
+         "More to write: id, depth, normal, position, lines; channels of an EXR, else pictures beside it",
+         [](S& s, Text t) { s.aovs = kAovs.read_list(t); },
+         [](const S& s) { return kAovs.print_list(s.aovs); }},
+        {"frame", "Input", "K", "Frame to draw of a file that has several, from 0",
+         [](S& s, Text t) { s.frame = read_int(t, 0, 1 << 30); },
+         [](const S& s) { return fmt::format("{}", s.frame); }},
+
+        {"view", "View", "SIDE",
+         "auto (broad side of molecules, three quarters of meshes), front, back, left, right, top, "
+         "bottom or iso",
+         [](S& s, Text t) { s.view.view = kViews.read(t); },
+         [](const S& s) { return kViews.print(s.view.view); }},
+        {"eye", "View", "X,Y,Z", "Where the viewer stands, in the units of the file",
+         [](S& s, Text t) { s.view.eye = read_vector(t); },
+         [](const S& s) { return s.view.eye ? print(*s.view.eye) : std::string(); }},
+        {"look-at", "View", "X,Y,Z", "What is in the middle of the picture",
+         [](S& s, Text t) { s.view.look_at = read_vector(t); },
+         [](const S& s) { return s.view.look_at ? print(*s.view.look_at) : std::string(); }},
+        {"up", "View", "X,Y,Z", "Direction that points up in the picture",
+         [](S& s, Text t) { s.view.up = read_vector(t); },
+         [](const S& s) { return s.view.up ? print(*s.view.up) : std::string(); }},
+        {"fov", "View", "DEG", "Vertical field of view",
+         [](S& s, Text t) { s.view.fov_deg = read_number(t, 0.001, 170); },
+         [](const S& s) { return fmt::format("{}", s.view.fov_deg); }},
+        {"orthographic", "View", "HEIGHT",
+         "Parallel projection; the height of the view in the units of the file, or auto to fit",
+         [](S& s, Text t) { s.view.orthographic = t == "auto" ? 0.0 : read_number(t, 1e-30, 1e30); },
+         [](const S& s) {
+             if (!s.view.orthographic) return std::string();
+             return *s.view.orthographic == 0.0 ? "auto" : fmt::format("{}", *s.view.orthographic);
+         }},
+        {"margin", "View", "F", "Share of the picture left free on each side by automatic framing",
+         [](S& s, Text t) { s.view.margin = read_number(t, 0, 0.45); },
+         [](const S& s) { return fmt::format("{}", s.view.margin); }},
+
+        {"method", "Lines", "NAME", "How lines are found: stencil (the paper's ray stencils)",
+         [](S& s, Text t) { s.method = kMethods.read(t); },
+         [](const S& s) { return kMethods.print(s.method); }},
+        {"lines", "Lines", "LIST",
+         "silhouette, intersection, all or none; method stencil cannot tell the two apart and draws "
+         "both for either",
+         [](S& s, Text t) { s.lines = kLineTypes.read_list(t); },
+         [](const S& s) { return kLineTypes.print_list(s.lines); }},
+        {"line-width", "Lines", "LEN", "Width in px, pt, mm or % of the picture's height",
+         [](S& s, Text t) { s.line_width = read_length(t); },
+         [](const S& s) {
+             return fmt::format("{}{}", s.line_width.value,
+                                kUnitNames[static_cast<std::size_t>(s.line_width.unit)]);
+         }},
+        {"line-color", "Lines", "COLOR", "Colour of the lines",
+         [](S& s, Text t) { s.line_color = read_color(t); },
+         [](const S& s) { return to_string(s.line_color); }},
+        {"ids", "Lines", "LEVEL",
+         "Between what lines run: primitive (atoms, particles, triangles), part (chains, groups) or "
+         "object; by default atoms, particles and whole meshes",
+         [](S& s, Text t) { s.ids = kIdLevels.read(t); },
+         [](const S& s) { return s.ids ? kIdLevels.print(*s.ids) : std::string(); }},
+        {"metric", "Lines", "NAME",
+         "Profile across a line: linear (soft, the paper's equation 2), power:P (bolder, equation 3 "
+         "has P = 10) or solid",
+         [](S& s, Text t) { s.metric = read_metric(t); },
+         [](const S& s) { return print(s.metric); }},
+        {"quality", "Lines", "N", "Rings of a stencil: 4 N (N + 1) rays a sample",
+         [](S& s, Text t) { s.rings = read_int(t, 1, 64); },
+         [](const S& s) { return fmt::format("{}", s.rings); }},
+        {"line-blend", "Lines", "SPACE",
+         "Values in which lines are mixed with the picture: display (sRGB), linear, or auto: linear "
+         "in an EXR, else display",
+         [](S& s, Text t) { s.line_blend = kBlends.read(t); },
+         [](const S& s) { return kBlends.print(s.line_blend); }},
+
+        {"shade", "Shading", "MODE", "lambert (diffuse), toon (in steps), flat (colours only) or none",
+         [](S& s, Text t) { s.shading.mode = kShadeModes.read(t); },
+         [](const S& s) { return kShadeModes.print(s.shading.mode); }},
+        {"aa", "Shading", "MODE",
+         "Smoothing of what is not a line: none, stencil (shade the stencil's rays too) or multisample:S",
+         [](S& s, Text t) { s.aa = read_aa(t); },
+         [](const S& s) { return print(s.aa); }},
+
+        {"threads", "Run", "T", "Threads to use; 0 for all. The picture does not depend on it",
+         [](S& s, Text t) { s.threads = read_int(t, 0, 1024); },
+         [](const S& s) { return fmt::format("{}", s.threads); }},
+        {"tile", "Run", "PX", "Side of the tiles that threads work on. The picture does not depend on it",
+         [](S& s, Text t) {
+             s.tile = read_int(t, 4, 4096);
+             if (s.tile % kBlockSide != 0) {
+                 throw UsageError(fmt::format("'{}' is not a multiple of {}", t, kBlockSide));
+             }
+         },
+         [](const S& s) { return fmt::format("{}", s.tile); }},
+    };
+}
+
+}  // namespace
+
+std::span<const Setting> settings_table() {
+    static const std::vector<Setting> kTable = [] {
+        std::vector<Setting> table = make_table();
+        for (Setting& row : table) {
+            row.set = [name = row.name, set = row.set](Settings& settings, std::string_view text) {
+                try {
+                    set(settings, text);
+                } catch (const UsageError& error) {
+                    throw UsageError(fmt::format("--{}: {}", name, error.what()));
+                }
+            };
+        }
+        return table;
+    }();
+    return kTable;
+}
+
+const Setting& find_setting(std::string_view name) {
+    std::vector<std::string_view> names;
+    for (const Setting& setting : settings_table()) {
+        if (setting.name == name) return setting;
+        names.push_back(setting.name);
+    }
+    const std::string_view guess = closest(name, names);
+    throw UsageError(guess.empty()
+                         ? fmt::format("there is no setting '{}'; see --help", name)
+                         : fmt::format("there is no setting '{}'; did you mean {}?", name, guess));
+}
+
+void validate(const Settings& settings) {
+    const double width = settings.line_width_px();
+    constexpr double kWidest = 1000.0;
+    if (!(width <= kWidest)) {
+        throw UsageError(fmt::format("--line-width: comes to {:.0f} pixels; the most is {}", width, kWidest));
+    }
+}
+
+}  // namespace ink

@@ -1,0 +1,99 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "base/color.h"
+#include "base/image.h"
+#include "camera/camera.h"
+#include "film/film.h"
+#include "lines/strength.h"
+#include "scene/ids.h"
+#include "shading/shading.h"
+
+namespace ink {
+
+/// A length on the picture, in the unit that it was given in.
+struct Length {
+    enum class Unit : std::uint8_t { px, pt, mm, percent };  ///< percent of the picture's height
+    double value = 0.0;
+    Unit unit = Unit::px;
+
+    double pixels(double dpi, int picture_height) const;
+};
+
+enum class Method : std::uint8_t { stencil };
+
+enum class LineType : std::uint8_t { silhouette, intersection };
+
+struct AntiAliasing {
+    enum class Kind : std::uint8_t {
+        none,        ///< one sample at the pixel's centre
+        stencil,     ///< the stencil's rays are shaded too (paper, section 4.2)
+        multisample  ///< S samples, each with a stencil of its own
+    };
+    Kind kind = Kind::none;
+    int samples = 1;  ///< of `multisample`
+};
+
+enum class Aov : std::uint8_t { id, depth, normal, position, lines };
+
+enum class LineBlend : std::uint8_t { automatic, display, linear };
+
+/// Everything that decides what a picture looks like. settings_table() is the way in for text.
+struct Settings {
+    Size size{1024, 1024};
+    double dpi = 300.0;
+    int frame = 0;
+
+    ViewSettings view;
+
+    Method method = Method::stencil;
+    std::vector<LineType> lines{LineType::silhouette, LineType::intersection};
+    Length line_width{2.0, Length::Unit::px};
+    Rgb8 line_color{0, 0, 0};
+    LineBlend line_blend = LineBlend::automatic;
+    std::optional<IdLevel> ids;
+    Metric metric;
+    int rings = 1;
+
+    Compose compose = Compose::both;
+    ShadingSettings shading;
+
+    AntiAliasing aa;
+    std::vector<Aov> aovs;
+
+    int threads = 0;
+    int tile = 64;
+
+    double line_width_px() const { return line_width.pixels(dpi, size.height); }
+    bool draws_lines() const { return compose != Compose::shaded && !lines.empty(); }
+};
+
+/// One row of the table: the single source for flags, help and reference pages.
+struct Setting {
+    std::string_view name;   ///< "line-width"
+    std::string_view topic;  ///< "Lines"
+    std::string_view value;  ///< how a value is written: "LEN"
+    std::string_view help;   ///< one sentence, no full stop
+    /// Throws UsageError that says what is wrong and what is allowed.
+    std::function<void(Settings&, std::string_view)> set;
+    /// The value in the form that `set` reads; empty for "chosen automatically".
+    std::function<std::string(const Settings&)> get;
+};
+
+/// All settings, grouped by topic.
+std::span<const Setting> settings_table();
+
+/// The row of that name. Throws UsageError, with the closest name there is.
+const Setting& find_setting(std::string_view name);
+
+/// Checks what concerns several settings at once. Throws UsageError.
+void validate(const Settings& settings);
+
+}  // namespace ink

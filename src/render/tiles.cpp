@@ -1,0 +1,33 @@
+#include "render/tiles.h"
+
+#include <algorithm>
+
+namespace ink {
+
+std::vector<Tile> cut_into_tiles(Size size, int side) {
+    std::vector<Tile> tiles;
+    for (int y = 0; y < size.height; y += side) {
+        for (int x = 0; x < size.width; x += side) {
+            tiles.push_back({x, y, std::min(x + side, size.width), std::min(y + side, size.height)});
+        }
+    }
+    return tiles;
+}
+
+void sort_blocks(const Tile& tile, const Camera& camera, float reach, std::vector<Block>& near_scene,
+                 std::vector<Block>& empty) {
+    near_scene.clear();
+    empty.clear();
+    const Camera::ScreenBox& box = camera.scene_box();
+    for (int y = tile.y0; y < tile.y1; y += kBlockSide) {
+        for (int x = tile.x0; x < tile.x1; x += kBlockSide) {
+            const auto left = static_cast<float>(x);
+            const auto top = static_cast<float>(y);
+            const bool near = left + kBlockSide + reach > box.left && left - reach < box.right &&
+                              top + kBlockSide + reach > box.top && top - reach < box.bottom;
+            (near ? near_scene : empty).push_back({x, y});
+        }
+    }
+}
+
+}  // namespace ink
