@@ -1,0 +1,13 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+namespace inktrace::cli {
+
+/// Adds `inktrace render` to the program. It runs when the arguments are parsed.
+void add_render_command(CLI::App& app);
+
+/// Adds `inktrace info`.
+void add_info_command(CLI::App& app);
+
+}  // namespace inktrace::cli

@@ -1,0 +1,81 @@
+#include <fmt/format.h>
+
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "commands.h"
+#include "inktrace/inktrace.h"
+
+namespace inktrace::cli {
+
+namespace {
+
+struct InfoArguments {
+    std::vector<std::string> inputs;
+    bool json = false;
+    int frame = 0;
+};
+
+nlohmann::ordered_json to_json(const FileInfo& info) {
+    nlohmann::ordered_json counts = nlohmann::ordered_json::object();
+    for (const auto& [what, count] : info.counts) counts[what] = count;
+    return {{"file", info.path.string()},
+            {"format", info.format},
+            {"kind", info.kind},
+            {"frames", info.frames},
+            {"counts", counts},
+            {"lower", info.lower},
+            {"upper", info.upper},
+            {"length_unit", info.length_unit},
+            {"warnings", info.warnings}};
+}
+
+void print_text(const FileInfo& info) {
+    const auto line = [](std::string_view name, const std::string& value) {
+        fmt::print("  {:<10}{}\n", name, value);
+    };
+    fmt::print("{}\n", info.path.string());
+    line("format", fmt::format("{} ({})", info.format, info.kind));
+    for (const auto& [what, count] : info.counts) line(what, std::to_string(count));
+    if (info.frames > 1) line("frames", std::to_string(info.frames));
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        line(axis == 0 ? "bounds" : "",
+             fmt::format("{}  {:.6g} to {:.6g}{}{}", "xyz"[axis], info.lower[axis],
+                         info.upper[axis], info.length_unit.empty() ? "" : " ", info.length_unit));
+    }
+    for (const std::string& warning : info.warnings) line("warning", warning);
+}
+
+void run(const InfoArguments& arguments) {
+    auto list = nlohmann::ordered_json::array();
+    for (const std::string& input : arguments.inputs) {
+        Scene scene;
+        const FileInfo info = scene.load(input, arguments.frame);
+        if (arguments.json) {
+            list.push_back(to_json(info));
+        } else {
+            print_text(info);
+        }
+    }
+    // Names of files need not be UTF-8.
+    if (arguments.json) {
+        fmt::print("{}\n", list.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
+    }
+}
+
+}  // namespace
+
+void add_info_command(CLI::App& app) {
+    CLI::App* command = app.add_subcommand("info", "Tell what is in files");
+    const auto arguments = std::make_shared<InfoArguments>();
+    command->add_option("INPUT", arguments->inputs, "Files to look into")->required();
+    command->add_flag("--json", arguments->json, "For machines");
+    command->add_option("--frame", arguments->frame, "Frame to look at of a file that has several [0]")
+        ->type_name("K")
+        ->check(CLI::NonNegativeNumber);
+    command->callback([arguments] { run(*arguments); });
+}
+
+}  // namespace inktrace::cli

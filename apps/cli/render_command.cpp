@@ -1,0 +1,150 @@
+#include <fmt/format.h>
+#include <sys/resource.h>
+
+#include <chrono>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "commands.h"
+#include "inktrace/inktrace.h"
+#include "progress_bar.h"
+#include "settings_flags.h"
+
+namespace inktrace::cli {
+
+namespace {
+
+struct RenderArguments {
+    std::vector<std::string> inputs;
+    std::string output;
+    std::string stats_file;
+    int repeat = 1;
+    bool quiet = false;
+    Settings settings;
+};
+
+/// What `--stats` reports beside the settings.
+struct Report {
+    double load_ms = 0.0;
+    double build_ms = 0.0;
+    std::size_t primitives = 0;
+    std::vector<RenderStats> renders;
+};
+
+std::uint64_t peak_rss_bytes() {
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024U;  // Linux counts in kB
+}
+
+nlohmann::ordered_json to_json(const RenderArguments& arguments, const Picture& picture,
+                               const Report& report) {
+    nlohmann::ordered_json json{{"width", picture.width()},
+                                {"height", picture.height()},
+                                {"threads", picture.stats().threads},
+                                {"method", arguments.settings.get("method")},
+                                {"primitives", report.primitives},
+                                {"load_ms", report.load_ms},
+                                {"build_ms", report.build_ms}};
+    const auto list = [&](double RenderStats::*time) {
+        auto times = nlohmann::ordered_json::array();
+        for (const RenderStats& stats : report.renders) times.push_back(stats.*time);
+        return times;
+    };
+    json["render_ms"] = list(&RenderStats::render_ms);
+    json["trace_ms"] = list(&RenderStats::trace_ms);
+    json["lines_ms"] = list(&RenderStats::lines_ms);
+    json["shade_ms"] = list(&RenderStats::shade_ms);
+    json["rays"] = picture.stats().rays;
+    json["crossings"] = 0;  // method stencil does not locate any
+    json["peak_rss_bytes"] = peak_rss_bytes();
+    return json;
+}
+
+void write_stats(const std::string& file, const nlohmann::ordered_json& json) {
+    std::ofstream out(file);
+    out << json.dump(2) << '\n';
+    out.close();
+    if (!out) {
+        throw Error(Error::Kind::input,
+                    fmt::format("{}: cannot write the statistics; check the folder", file));
+    }
+}
+
+Scene load(const RenderArguments& arguments) {
+    Scene scene;
+    const int frame = std::stoi(arguments.settings.get("frame"));
+    for (const std::string& input : arguments.inputs) {
+        const FileInfo info = scene.load(input, frame);
+        for (const std::string& warning : info.warnings) {
+            fmt::print(stderr, "{}: warning: {}\n", input, warning);
+        }
+    }
+    return scene;
+}
+
+double ms_since(std::chrono::steady_clock::time_point start) {
+    return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start)
+        .count();
+}
+
+void run(const RenderArguments& arguments) {
+    RenderOptions options = options_for_output(arguments.output);
+    const auto start = std::chrono::steady_clock::now();
+    Report report;
+    Scene scene = load(arguments);
+    report.load_ms = ms_since(start);
+    report.primitives = scene.primitive_count();
+
+    const Renderer renderer(std::move(scene));
+    report.build_ms = renderer.build_ms();
+
+    std::optional<Picture> picture;
+    for (int k = 0; k < arguments.repeat; ++k) {
+        ProgressBar bar(!arguments.quiet);
+        options.progress = [&](double share, double megapixels) { bar.update(share, megapixels); };
+        picture.reset();
+        picture.emplace(renderer.render(arguments.settings, options));
+        report.renders.push_back(picture->stats());
+    }
+    picture->save(arguments.output);
+    if (!arguments.stats_file.empty()) {
+        write_stats(arguments.stats_file, to_json(arguments, *picture, report));
+    }
+    if (!arguments.quiet) {
+        fmt::print(stderr, "{}: {} x {} pixels, {} primitives, {:.2f} s\n", arguments.output,
+                   picture->width(), picture->height(), report.primitives, ms_since(start) / 1000);
+    }
+}
+
+}  // namespace
+
+void add_render_command(CLI::App& app) {
+    CLI::App* command = app.add_subcommand("render", "Draw files as one picture");
+    const auto arguments = std::make_shared<RenderArguments>();
+    command->add_option("INPUT", arguments->inputs, "Files to draw together")->required();
+    command->add_option("-o,--output", arguments->output, "Picture to write: .png, .jpg, .tiff, .exr")
+        ->type_name("FILE")
+        ->required()
+        ->group("Picture");
+    add_setting_flags(*command, arguments->settings);
+    command->add_option("--repeat", arguments->repeat, "Render this many times, to measure [1]")
+        ->type_name("K")
+        ->check(CLI::Range(1, 1000000))
+        ->group("Run");
+    command->add_option("--stats", arguments->stats_file, "Write times and counts as JSON")
+        ->type_name("FILE")
+        ->group("Run");
+    command->add_flag("--quiet", arguments->quiet, "No progress bar and no closing line")
+        ->group("Run");
+    command->footer(
+        "Example: inktrace render 1crn.pdb -o crambin.png --line-width 0.5pt --dpi 300");
+    command->callback([arguments] { run(*arguments); });
+}
+
+}  // namespace inktrace::cli

@@ -1,0 +1,27 @@
+#include "settings_flags.h"
+
+#include <fmt/format.h>
+
+#include <string>
+
+namespace inktrace::cli {
+
+void add_setting_flags(CLI::App& command, Settings& settings) {
+    for (const SettingInfo& info : all_settings()) {
+        const std::string help = info.default_value.empty()
+                                     ? info.help
+                                     : fmt::format("{} [{}]", info.help, info.default_value);
+        command
+            .add_option_function<std::string>(
+                "--" + info.name,
+                [&settings, name = info.name](const std::string& value) {
+                    settings.set(name, value);
+                },
+                help)
+            ->type_name(info.value)
+            ->group(info.topic)
+            ->expected(1);
+    }
+}
+
+}  // namespace inktrace::cli

@@ -1,0 +1,167 @@
+// What a frame costs, in units of a loop that only traces one primary ray a pixel.
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstdio>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "accel/tracer.h"
+#include "bare_loop.h"
+#include "camera/camera.h"
+#include "io/reader.h"
+#include "render/render.h"
+#include "scenes.h"
+
+namespace {
+
+using namespace ink;
+using namespace ink::bench;
+
+double median(std::vector<double> values) {
+    std::ranges::nth_element(values, values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2));
+    return values[values.size() / 2];
+}
+
+BareLoop::Pinhole pinhole(const Scene& scene, const Camera& camera, const Settings& settings) {
+    const auto half = static_cast<float>(std::tan(settings.view.fov_deg * 3.14159265358979 / 360.0));
+    const float pixel = 2.0F * half / static_cast<float>(settings.size.height);
+    const Vec3f dx = camera.right() * pixel;
+    const Vec3f dy = camera.up() * -pixel;
+    return {scene.frame().from_world(camera.world_eye()),
+            -camera.back() - dx * (0.5F * static_cast<float>(settings.size.width)) -
+                dy * (0.5F * static_cast<float>(settings.size.height)),
+            dx, dy, settings.size};
+}
+
+struct Row {
+    std::string what;
+    double median_ms;
+    double in_r;  ///< median over rounds of time / R of the same round
+};
+
+struct Result {
+    std::string scene;
+    double r_ms;
+    std::vector<Row> rows;
+};
+
+struct Variant {
+    std::string name;
+    Settings settings;
+};
+
+std::vector<Variant> variants(Size size, int most_threads, bool stencils) {
+    Settings plain;
+    plain.size = size;
+    plain.threads = 1;
+    plain.compose = Compose::shaded;
+    std::vector<Variant> list{{"no lines", plain}};
+    Settings threaded = plain;
+    threaded.threads = most_threads;
+    list.push_back({fmt::format("no lines, {} threads", most_threads), threaded});
+    for (int rings = 1; stencils && rings <= 3; ++rings) {
+        Settings lines = plain;
+        lines.compose = Compose::both;
+        lines.rings = rings;
+        list.push_back({fmt::format("stencil, N = {}", rings), lines});
+    }
+    return list;
+}
+
+/// Rounds of R and every variant in turn, so that a machine that slows down slows all alike.
+Result measure(const NamedScene& named, Size size, int rounds, int threads, bool stencils) {
+    const Scene scene(named.objects);
+    const auto tracer = make_embree_tracer(scene);
+    const BareLoop bare(scene);
+    const std::vector<Variant> list = variants(size, threads, stencils);
+    const Camera camera(scene, list[0].settings.view, size);
+    const BareLoop::Pinhole rays = pinhole(scene, camera, list[0].settings);
+
+    std::vector<double> r;
+    std::vector<std::vector<double>> times(list.size());
+    std::vector<std::vector<double>> ratios(list.size());
+    for (int round = 0; round <= rounds; ++round) {
+        std::size_t hits = 0;
+        // The faster of two: a cold start is not what the loop costs.
+        const double loop = std::min(bare.run(rays, hits), bare.run(rays, hits));
+        if (round > 0) r.push_back(loop);
+        for (std::size_t k = 0; k < list.size(); ++k) {
+            RenderStats stats;
+            double best = 1e30;
+            const int tries = list[k].settings.compose == Compose::shaded ? 2 : 1;
+            for (int i = 0; i < tries; ++i) {
+                render(scene, *tracer, list[k].settings, {}, {}, &stats);
+                best = std::min(best, stats.render_ms);
+            }
+            if (round == 0) continue;  // warms caches and the clock
+            times[k].push_back(best);
+            ratios[k].push_back(best / loop);
+        }
+    }
+    Result result{named.name, median(r), {}};
+    for (std::size_t k = 0; k < list.size(); ++k) {
+        result.rows.push_back({list[k].name, median(times[k]), median(ratios[k])});
+    }
+    return result;
+}
+
+void print(const Result& result) {
+    fmt::print("{}\n  {:<28}{:>9.2f} ms\n", result.scene, "R (bare rtcIntersect16 loop)", result.r_ms);
+    for (const Row& row : result.rows) {
+        fmt::print("  {:<28}{:>9.2f} ms {:>8.2f} R\n", row.what, row.median_ms, row.in_r);
+    }
+    fmt::print("  {:<28}{:>9.2f} x\n\n", "speed-up by threads",
+               result.rows[0].median_ms / result.rows[1].median_ms);
+    std::fflush(stdout);
+}
+
+nlohmann::ordered_json to_json(const Result& result) {
+    nlohmann::ordered_json json{{"scene", result.scene}, {"r_ms", result.r_ms}};
+    for (const Row& row : result.rows) {
+        json["rows"].push_back({{"what", row.what}, {"ms", row.median_ms}, {"r", row.in_r}});
+    }
+    return json;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    CLI::App app("Measures whole frames in units of R, the time of a bare tracing loop.");
+    std::vector<std::string> files;
+    std::string json_file;
+    int side = 1024;
+    int rounds = 7;
+    int threads = 2;
+    bool stencils = true;
+    app.add_option("FILE", files, "Scenes to measure beside the built-in ones");
+    app.add_option("--json", json_file, "Write the results as JSON");
+    app.add_option("--side", side, "Pixels of the square picture's side [1024]");
+    app.add_option("--rounds", rounds, "Rounds to take the median of [7]");
+    app.add_option("--threads", threads, "Threads to compare with one [2]");
+    app.add_flag("!--no-stencils", stencils, "Only frames without lines");
+    CLI11_PARSE(app, argc, argv);
+
+    std::vector<NamedScene> scenes;
+    try {
+        for (const std::string& file : files) scenes.push_back({file, read_file(file).objects});
+    } catch (const std::exception& error) {
+        fmt::print(stderr, "{}\n", error.what());
+        return 1;
+    }
+    scenes.push_back(bumpy_sphere(6));
+    scenes.push_back(random_spheres(1'000'000));
+
+    auto json = nlohmann::ordered_json::array();
+    for (const NamedScene& scene : scenes) {
+        const Result result = measure(scene, {side, side}, rounds, threads, stencils);
+        print(result);
+        json.push_back(to_json(result));
+    }
+    if (!json_file.empty()) std::ofstream(json_file) << json.dump(2) << '\n';
+    return 0;
+}

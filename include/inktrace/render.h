@@ -1,0 +1,90 @@
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "inktrace/scene.h"
+#include "inktrace/settings.h"
+
+namespace inktrace {
+
+/// What a render took. Times are wall time in milliseconds; a phase's is the mean over threads.
+struct RenderStats {
+    double render_ms = 0.0;  ///< from the built scene to the finished pixels
+    double trace_ms = 0.0;
+    double lines_ms = 0.0;
+    double shade_ms = 0.0;
+    std::uint64_t rays = 0;
+    int threads = 0;
+};
+
+/// A finished picture.
+class Picture {
+  public:
+    Picture(Picture&&) noexcept;
+    Picture& operator=(Picture&&) noexcept;
+    ~Picture();
+
+    int width() const;
+    int height() const;
+    /// R, G, B, A bytes a pixel, rows from the top; sRGB, straight alpha. Empty if not asked for.
+    std::span<const std::uint8_t> rgba() const;
+    /// A plane of floats by its name in an EXR: "R", "G", "B", "A" (linear, premultiplied; if asked
+    /// for) or an AOV such as "Z". Empty where there is none.
+    std::span<const float> channel(std::string_view name) const;
+    const RenderStats& stats() const;
+
+    /// Writes .png, .jpg, .tiff or .exr (which needs `linear` pixels), with the settings in the
+    /// file's metadata. AOVs become channels of an EXR, or pictures beside any other file
+    /// ("x.depth.png"). Files appear whole or not at all. Throws Error (input).
+    void save(const std::filesystem::path& file) const;
+
+    struct Impl;
+    explicit Picture(std::unique_ptr<Impl> impl);
+
+  private:
+    std::unique_ptr<Impl> impl_;
+};
+
+/// How to follow a render, and what it is for.
+struct RenderOptions {
+    bool display = true;  ///< make 8-bit sRGB pixels
+    bool linear = false;  ///< make linear float pixels, as an EXR holds them
+    /// Called with the share that is done, in (0, 1], and the size of the whole in megapixels, from
+    /// the rendering threads, one at a time.
+    std::function<void(double share, double megapixels)> progress;
+    /// Once true, rendering stops within a tile's time and throws Error (cancelled).
+    const std::atomic<bool>* cancel = nullptr;
+};
+
+/// What `save` to this file needs. Throws Error (usage) for an extension that is not a picture's,
+/// Error (input) where the file cannot be written, before any time is spent.
+RenderOptions options_for_output(const std::filesystem::path& file);
+
+/// A scene made ready for rays. Build it once, render it often.
+class Renderer {
+  public:
+    /// Throws Error (input) where the scene is empty or does not fit into memory.
+    explicit Renderer(Scene scene);
+    Renderer(Renderer&&) noexcept;
+    Renderer& operator=(Renderer&&) noexcept;
+    ~Renderer();
+
+    /// The same scene and settings give the same bytes. Throws Error.
+    Picture render(const Settings& settings, const RenderOptions& options = {}) const;
+
+    double build_ms() const;  ///< that the constructor took
+
+  private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace inktrace

@@ -1,0 +1,65 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace inktrace {
+
+/// What a file held.
+struct FileInfo {
+    std::filesystem::path path;
+    std::string format;       ///< "PDB"
+    std::string kind;         ///< "molecule", "particles" or "mesh"
+    std::string length_unit;  ///< "angstrom"; empty where the format does not say
+    int frames = 1;
+    std::vector<std::pair<std::string, std::uint64_t>> counts;  ///< ("atoms", 327), ...
+    std::array<double, 3> lower{};  ///< bounds of what is drawn, in the file's units
+    std::array<double, 3> upper{};
+    std::vector<std::string> warnings;  ///< what was left out or guessed
+};
+
+/// Molecules, meshes and spheres to draw together.
+class Scene {
+  public:
+    Scene();
+    Scene(Scene&&) noexcept;
+    Scene& operator=(Scene&&) noexcept;
+    ~Scene();
+
+    /// Adds what a file holds; the format is told from the extension. `frame` counts from 0.
+    /// Throws Error (input).
+    FileInfo load(const std::filesystem::path& file, int frame = 0);
+
+    /// Adds spheres: x, y, z, radius of each, and either no colours or r, g, b (0 to 255, sRGB) of
+    /// each. Values must be finite and radii positive, else Error (input).
+    void add_spheres(std::string_view name, std::span<const float> centers_and_radii,
+                     std::span<const std::uint8_t> colors = {});
+
+    /// Adds a triangle mesh: x, y, z of each vertex, three vertex indices of each triangle. Normals
+    /// are smooth where triangles meet at less than 35 degrees. Throws Error (input) for an index
+    /// or a coordinate that is not valid.
+    void add_mesh(std::string_view name, std::span<const float> vertices,
+                  std::span<const std::uint32_t> triangles,
+                  std::array<std::uint8_t, 3> color = {204, 204, 204});
+
+    std::size_t primitive_count() const;
+
+    struct Impl;
+    Impl& impl() { return *impl_; }
+
+  private:
+    std::unique_ptr<Impl> impl_;
+};
+
+/// The formats that `Scene::load` reads, each with its extensions: ("PDB", ".pdb .ent").
+std::vector<std::pair<std::string, std::string>> input_formats();
+
+}  // namespace inktrace

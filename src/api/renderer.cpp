@@ -1,0 +1,80 @@
+#include <chrono>
+#include <utility>
+
+#include "accel/tracer.h"
+#include "api/guard.h"
+#include "api/impl.h"
+#include "inktrace/inktrace.h"
+#include "io/atomic_file.h"
+#include "render/render.h"
+
+namespace inktrace {
+
+const char* version() { return INKTRACE_VERSION; }
+
+void remove_unfinished_files() noexcept { ink::AtomicFile::remove_unfinished(); }
+
+struct Renderer::Impl {
+    explicit Impl(std::vector<ink::Object> objects)
+        : scene(std::move(objects)), tracer(ink::make_embree_tracer(scene)) {}
+
+    ink::Scene scene;
+    std::unique_ptr<ink::Tracer> tracer;
+    double build_ms = 0.0;
+};
+
+Renderer::Renderer(Scene scene) {
+    ink::guard([&] {
+        if (scene.primitive_count() == 0) throw ink::Error("there is nothing to draw");
+        const auto start = std::chrono::steady_clock::now();
+        impl_ = std::make_unique<Impl>(std::move(scene.impl().objects));
+        const std::chrono::duration<double, std::milli> time =
+            std::chrono::steady_clock::now() - start;
+        impl_->build_ms = time.count();
+    });
+}
+Renderer::Renderer(Renderer&&) noexcept = default;
+Renderer& Renderer::operator=(Renderer&&) noexcept = default;
+Renderer::~Renderer() = default;
+
+double Renderer::build_ms() const { return impl_->build_ms; }
+
+namespace {
+
+/// The flags that make this picture again. What the picture does not depend on is left out: the
+/// same picture must be the same file.
+ink::Metadata metadata(const Settings& settings) {
+    std::string flags;
+    for (const auto& [name, value] : settings.changed()) {
+        if (ink::find_setting(name).topic == "Run") continue;
+        flags += (flags.empty() ? "--" : " --") + name + " " + value;
+    }
+    return {{"Software", std::string("Inktrace ") + version()}, {"Settings", flags}};
+}
+
+}  // namespace
+
+Picture Renderer::render(const Settings& settings, const RenderOptions& options) const {
+    return ink::guard([&] {
+        const ink::Settings& inner = settings.impl().settings;
+        ink::RenderStats stats;
+        std::function<void(double)> progress;
+        if (options.progress) {
+            const double megapixels = static_cast<double>(inner.size.pixels()) * 1e-6;
+            progress = [&, megapixels](double share) { options.progress(share, megapixels); };
+        }
+        ink::Film film = ink::render(
+            impl_->scene, *impl_->tracer, inner,
+            {.display = options.display, .linear = options.linear},
+            {.progress = progress, .cancel = options.cancel}, &stats);
+        return Picture(std::make_unique<Picture::Impl>(Picture::Impl{
+            .film = std::move(film),
+            .dpi = inner.dpi,
+            .aovs = inner.aovs,
+            .metadata = metadata(settings),
+            .stats = {stats.render_ms, stats.trace_ms, stats.lines_ms, stats.shade_ms, stats.rays,
+                      stats.threads}}));
+    });
+}
+
+}  // namespace inktrace

@@ -1,0 +1,50 @@
+#include "inktrace/settings.h"
+
+#include "api/guard.h"
+#include "api/impl.h"
+
+namespace inktrace {
+
+const std::vector<SettingInfo>& all_settings() {
+    static const std::vector<SettingInfo> kInfos = [] {
+        const ink::Settings defaults;
+        std::vector<SettingInfo> infos;
+        for (const ink::Setting& row : ink::settings_table()) {
+            infos.push_back({std::string(row.name), std::string(row.topic), std::string(row.value),
+                             std::string(row.help), row.get(defaults)});
+        }
+        return infos;
+    }();
+    return kInfos;
+}
+
+Settings::Settings() : impl_(std::make_unique<Impl>()) {}
+Settings::Settings(const Settings& other) : impl_(std::make_unique<Impl>(*other.impl_)) {}
+Settings::Settings(Settings&&) noexcept = default;
+Settings& Settings::operator=(const Settings& other) {
+    *impl_ = *other.impl_;
+    return *this;
+}
+Settings& Settings::operator=(Settings&&) noexcept = default;
+Settings::~Settings() = default;
+
+Settings& Settings::set(std::string_view name, std::string_view value) {
+    ink::guard([&] { ink::find_setting(name).set(impl_->settings, value); });
+    return *this;
+}
+
+std::string Settings::get(std::string_view name) const {
+    return ink::guard([&] { return ink::find_setting(name).get(impl_->settings); });
+}
+
+std::vector<std::pair<std::string, std::string>> Settings::changed() const {
+    const ink::Settings defaults;
+    std::vector<std::pair<std::string, std::string>> list;
+    for (const ink::Setting& row : ink::settings_table()) {
+        std::string value = row.get(impl_->settings);
+        if (value != row.get(defaults)) list.emplace_back(row.name, std::move(value));
+    }
+    return list;
+}
+
+}  // namespace inktrace
