@@ -1,0 +1,83 @@
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+#include <random>
+#include <utility>
+#include <vector>
+
+#include "scene/scene.h"
+
+/// Scenes with known answers.
+namespace ink::test {
+
+inline Object sphere_object(std::vector<Sphere> spheres) {
+    Object object;
+    object.name = "spheres";
+    object.kind = ObjectKind::particles;
+    object.shape = Spheres{std::move(spheres), {}, {}};
+    return object;
+}
+
+inline Object mesh_object(std::vector<Vec3f> vertices, std::vector<Mesh::Triangle> triangles) {
+    Object object;
+    object.name = "mesh";
+    Mesh mesh;
+    mesh.vertices = std::move(vertices);
+    mesh.triangles = std::move(triangles);
+    object.shape = std::move(mesh);
+    return object;
+}
+
+/// A square in the plane z = 0 about the origin, one edge of which runs through the origin at
+/// `angle_deg` from the x axis; the square lies on the left of that direction.
+inline Object half_plane(double angle_deg, double size = 20.0) {
+    const double a = angle_deg * std::numbers::pi / 180.0;
+    const Vec3d along{std::cos(a), std::sin(a), 0.0};
+    const Vec3d left{-along.y, along.x, 0.0};
+    const auto corner = [&](double s, double t) { return to_float(along * s + left * t); };
+    return mesh_object({corner(-size, 0), corner(size, 0), corner(size, size), corner(-size, size)},
+                       {{0, 1, 2}, {0, 2, 3}});
+}
+
+/// A number in [0, 1) from the engine itself: distributions differ between standard libraries.
+inline float uniform(std::mt19937& random) { return static_cast<float>(random() >> 8U) * 0x1p-24F; }
+
+inline Vec3f uniform_point(std::mt19937& random) {
+    const float x = uniform(random);
+    const float y = uniform(random);
+    return {x, y, uniform(random)};
+}
+
+/// Overlapping spheres of different sizes, and a soup of triangles among them.
+inline std::vector<Object> random_objects(unsigned seed, int spheres, int triangles) {
+    std::mt19937 random(seed);
+    std::vector<Sphere> balls;
+    for (int i = 0; i < spheres; ++i) {
+        const Vec3f centre = uniform_point(random);
+        balls.push_back({centre, 0.02F + 0.15F * uniform(random)});
+    }
+    std::vector<Vec3f> vertices;
+    std::vector<Mesh::Triangle> indices;
+    for (int i = 0; i < triangles; ++i) {
+        const Vec3f middle = uniform_point(random);
+        const auto first = static_cast<std::uint32_t>(vertices.size());
+        for (int k = 0; k < 3; ++k) {
+            vertices.push_back(middle + (uniform_point(random) - Vec3f{0.5F, 0.5F, 0.5F}) * 0.3F);
+        }
+        indices.push_back({first, first + 1, first + 2});
+    }
+    return {sphere_object(std::move(balls)), mesh_object(std::move(vertices), std::move(indices))};
+}
+
+/// The objects moved and scaled in the world: p -> p * scale + shift.
+inline std::vector<Object> placed(std::vector<Object> objects, double scale, Vec3d shift) {
+    for (Object& object : objects) {
+        object.frame.origin = object.frame.origin * scale + shift;
+        object.frame.unit *= scale;
+    }
+    return objects;
+}
+
+}  // namespace ink::test

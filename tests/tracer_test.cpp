@@ -1,0 +1,152 @@
+#include "accel/tracer.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <memory>
+#include <string>
+
+#include "scenes.h"
+
+namespace ink::test {
+namespace {
+
+void set_ray(RayPacket& rays, int lane, Vec3f origin, Vec3f dir) {
+    rays.origin_x[lane] = origin.x;
+    rays.origin_y[lane] = origin.y;
+    rays.origin_z[lane] = origin.z;
+    rays.dir_x[lane] = dir.x;
+    rays.dir_y[lane] = dir.y;
+    rays.dir_z[lane] = dir.z;
+}
+
+/// Rays from within and around the scene to points in its middle.
+std::vector<RayPacket> random_rays(unsigned seed, std::size_t packets) {
+    std::mt19937 random(seed);
+    std::vector<RayPacket> rays(packets);
+    for (RayPacket& packet : rays) {
+        for (int lane = 0; lane < kLanes; ++lane) {
+            const Vec3f origin = uniform_point(random) * 3.0F - Vec3f{1.5F, 1.5F, 1.5F};
+            const Vec3f target = (uniform_point(random) - Vec3f{0.5F, 0.5F, 0.5F}) * 0.9F;
+            set_ray(packet, lane, origin, normalize(target - origin));
+        }
+    }
+    return rays;
+}
+
+std::vector<HitPacket> trace(const Tracer& tracer, const std::vector<RayPacket>& rays,
+                             Coherence coherence = Coherence::incoherent) {
+    std::vector<HitPacket> hits(rays.size());
+    tracer.intersect(rays, hits, coherence);
+    return hits;
+}
+
+struct Agreement {
+    int rays = 0, hits = 0, different = 0;
+    float t_error = 0.0F, normal_error = 0.0F;
+};
+
+Agreement compare(const std::vector<HitPacket>& a, const std::vector<HitPacket>& b) {
+    Agreement result;
+    for (std::size_t k = 0; k < a.size(); ++k) {
+        for (int i = 0; i < kLanes; ++i) {
+            ++result.rays;
+            if (a[k].object[i] != b[k].object[i] || (a[k].object[i] != kNoObject &&
+                                                     a[k].primitive[i] != b[k].primitive[i])) {
+                ++result.different;
+                continue;
+            }
+            if (a[k].object[i] == kNoObject) {
+                EXPECT_TRUE(std::isinf(a[k].t[i]) && std::isinf(b[k].t[i]));
+                continue;
+            }
+            ++result.hits;
+            result.t_error = std::max(result.t_error, std::abs(a[k].t[i] - b[k].t[i]));
+            const Vec3f n{a[k].normal_x[i], a[k].normal_y[i], a[k].normal_z[i]};
+            const Vec3f m{b[k].normal_x[i], b[k].normal_y[i], b[k].normal_z[i]};
+            result.normal_error =
+                std::max(result.normal_error, length(normalize(n) - normalize(m)));
+        }
+    }
+    return result;
+}
+
+class EveryTracerPath : public testing::TestWithParam<PacketWidth> {};
+
+TEST_P(EveryTracerPath, HitsWhatBruteForceHits) {
+    const Scene scene(random_objects(7, 300, 400));
+    const auto rays = random_rays(11, 400);
+    const auto embree = make_embree_tracer(scene, GetParam());
+    const auto oracle = make_brute_force_tracer(scene);
+    const Agreement result = compare(trace(*oracle, rays), trace(*embree, rays));
+    EXPECT_GT(result.hits, result.rays / 4);
+    // A ray in a few thousand passes within rounding of an outline.
+    EXPECT_LE(result.different, 3) << "of " << result.rays;
+    EXPECT_LT(result.t_error, 2e-5F);
+    EXPECT_LT(result.normal_error, 2e-2F);  // at a limb the normal turns by sqrt(2 eps)
+}
+
+TEST_P(EveryTracerPath, LeavesInactiveRaysAlone) {
+    const Scene scene(random_objects(7, 300, 400));
+    auto rays = random_rays(12, 20);
+    const auto embree = make_embree_tracer(scene, GetParam());
+    const auto all = trace(*embree, rays);
+    for (RayPacket& packet : rays) {
+        for (int i = 0; i < kLanes; i += 3) packet.active[i] = 0;
+    }
+    const auto some = trace(*embree, rays);
+    for (std::size_t k = 0; k < rays.size(); ++k) {
+        for (int i = 0; i < kLanes; ++i) {
+            const bool active = i % 3 != 0;
+            EXPECT_EQ(some[k].object[i], active ? all[k].object[i] : kNoObject);
+            EXPECT_EQ(some[k].t[i], active ? all[k].t[i] : kInfinity);
+        }
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Packets, EveryTracerPath,
+                         testing::Values(PacketWidth::one, PacketWidth::eight, PacketWidth::sixteen,
+                                         PacketWidth::widest),
+                         [](const auto& width) {
+                             return width.param == PacketWidth::widest
+                                        ? std::string("Widest")
+                                        : "Of" + std::to_string(static_cast<int>(width.param));
+                         });
+
+TEST(TracerPaths, AgreeAmongThemselvesOnCoherentRays) {
+    const Scene scene(random_objects(3, 500, 500));
+    std::vector<RayPacket> rays(64 * 64);
+    for (int k = 0; k < 64 * 64; ++k) {
+        for (int i = 0; i < kLanes; ++i) {
+            const float x = (static_cast<float>(k % 64 * 4 + i % 4) + 0.5F) / 128.0F - 1.0F;
+            const float y = (static_cast<float>(k / 64 * 4 + i / 4) + 0.5F) / 128.0F - 1.0F;
+            set_ray(rays[static_cast<std::size_t>(k)], i, {0, 0, 3},
+                    normalize(Vec3f{0.2F * x, 0.2F * y, -1.0F}));
+        }
+    }
+    const auto sixteen = trace(*make_embree_tracer(scene, PacketWidth::sixteen), rays,
+                               Coherence::coherent);
+    for (const PacketWidth width : {PacketWidth::eight, PacketWidth::one}) {
+        const Agreement result = compare(
+            sixteen, trace(*make_embree_tracer(scene, width), rays, Coherence::coherent));
+        EXPECT_GT(result.hits, result.rays / 4);
+        EXPECT_LE(result.different, 4) << "of " << result.rays;
+        EXPECT_LT(result.t_error, 2e-5F);
+    }
+}
+
+TEST(Tracer, SeesTheFarSideFromInsideASphere) {
+    const Scene scene({sphere_object({{{0, 0, 0}, 1}})});
+    RayPacket rays{};
+    rays.active.fill(-1);
+    for (int i = 0; i < kLanes; ++i) set_ray(rays, i, {0.1F, 0, 0}, {1, 0, 0});
+    const float radius = std::get<Spheres>(scene.objects()[0].shape).spheres[0].radius;
+    for (const auto& tracer : {make_embree_tracer(scene), make_brute_force_tracer(scene)}) {
+        const auto hits = trace(*tracer, {rays});
+        EXPECT_EQ(hits[0].object[0], 0U);
+        EXPECT_NEAR(hits[0].t[0], radius - 0.1F, 1e-6F);
+    }
+}
+
+}  // namespace
+}  // namespace ink::test
