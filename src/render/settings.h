@@ -55,7 +55,7 @@ struct Settings {
 
     Method method = Method::stencil;
     std::vector<LineType> lines{LineType::silhouette, LineType::intersection};
-    Length line_width{2.0, Length::Unit::px};
+    Length line_width{3.0, Length::Unit::px};
     Rgb8 line_color{0, 0, 0};
     LineBlend line_blend = LineBlend::automatic;
     std::optional<IdLevel> ids;
@@ -93,7 +93,9 @@ std::span<const Setting> settings_table();
 /// The row of that name. Throws UsageError, with the closest name there is.
 const Setting& find_setting(std::string_view name);
 
-/// Checks what concerns several settings at once. Throws UsageError.
-void validate(const Settings& settings);
+/// Checks what concerns several settings at once, and that the picture fits into the machine's
+/// memory, given the bytes that the colour of a pixel takes: 4 on a display, 16 as linear numbers.
+/// Throws UsageError.
+void validate(const Settings& settings, int color_bytes = 4);
 
 }  // namespace ink

@@ -9,8 +9,20 @@ namespace ink {
 
 namespace {
 
-const std::vector<std::uint32_t>& parts_of(const Object& object) {
-    return std::visit([](const auto& shape) -> const auto& { return shape.parts; }, object.shape);
+using Groups = std::vector<std::uint32_t>;
+
+/// Which group each primitive of an object belongs to at a level; null where each is one of its own
+/// (primitive) or all are one (object). A polygon counts as one primitive, however it was cut into
+/// triangles.
+const Groups* groups(const Object& object, IdLevel level) {
+    const Groups* found = nullptr;
+    if (level == IdLevel::part) {
+        found = std::visit([](const auto& shape) { return &shape.parts; }, object.shape);
+    } else if (const auto* mesh = std::get_if<Mesh>(&object.shape);
+               mesh != nullptr && level == IdLevel::primitive) {
+        found = &mesh->faces;
+    }
+    return found == nullptr || found->empty() ? nullptr : found;
 }
 
 /// All lanes hit one object, or nothing.
@@ -30,13 +42,12 @@ LineIds::LineIds(const Scene& scene, std::optional<IdLevel> level) {
     for (const Object& object : scene.objects()) {
         const IdLevel own = level.value_or(object.kind == ObjectKind::mesh ? IdLevel::object
                                                                            : IdLevel::primitive);
-        const auto& parts = parts_of(object);
-        if (own == IdLevel::primitive) {
+        if (const Groups* own_groups = groups(object, own)) {
+            objects_.push_back({next, 0, own_groups});
+            next += *std::ranges::max_element(*own_groups) + 1;
+        } else if (own == IdLevel::primitive) {
             objects_.push_back({next, 1, nullptr});
             next += static_cast<GeometryId>(object.primitive_count());
-        } else if (own == IdLevel::part && !parts.empty()) {
-            objects_.push_back({next, 0, &parts});
-            next += static_cast<GeometryId>(std::max<std::size_t>(object.part_names.size(), 1));
         } else {
             objects_.push_back({next, 0, nullptr});
             next += 1;
@@ -45,7 +56,7 @@ LineIds::LineIds(const Scene& scene, std::optional<IdLevel> level) {
 }
 
 void LineIds::resolve(const HitPacket& hits, Lanes<GeometryId>& ids) const {
-    if (objects_.size() == 1 && objects_[0].parts == nullptr) {
+    if (objects_.size() == 1 && objects_[0].groups == nullptr) {
         resolve_one_object(hits, objects_[0].first, objects_[0].stride, ids);
         return;
     }
@@ -55,7 +66,7 @@ void LineIds::resolve(const HitPacket& hits, Lanes<GeometryId>& ids) const {
 GeometryId LineIds::resolve(std::uint32_t object, std::uint32_t primitive) const {
     if (object == kNoObject) return kBackground;
     const ObjectIds& own = objects_[object];
-    return own.first + (own.parts != nullptr ? (*own.parts)[primitive] : own.stride * primitive);
+    return own.first + (own.groups != nullptr ? (*own.groups)[primitive] : own.stride * primitive);
 }
 
 }  // namespace ink

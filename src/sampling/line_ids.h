@@ -21,9 +21,9 @@ class LineIds {
 
   private:
     struct ObjectIds {
-        GeometryId first;                           ///< ID of primitive, part or object 0
-        std::uint32_t stride;                       ///< 1: primitives differ; 0: they do not
-        const std::vector<std::uint32_t>* parts{};  ///< at level part
+        GeometryId first;      ///< of the object's IDs
+        std::uint32_t stride;  ///< 1: every primitive has its own; 0: they share one
+        const std::vector<std::uint32_t>* groups = nullptr;  ///< instead: an offset a primitive
     };
     std::vector<ObjectIds> objects_;
 };
