@@ -21,14 +21,10 @@ struct InfoArguments {
 nlohmann::ordered_json to_json(const FileInfo& info) {
     nlohmann::ordered_json counts = nlohmann::ordered_json::object();
     for (const auto& [what, count] : info.counts) counts[what] = count;
-    return {{"file", info.path.string()},
-            {"format", info.format},
-            {"kind", info.kind},
-            {"frames", info.frames},
-            {"counts", counts},
-            {"lower", info.lower},
-            {"upper", info.upper},
-            {"length_unit", info.length_unit},
+    return {{"file", info.path.string()}, {"format", info.format},
+            {"kind", info.kind},          {"frames", info.frames},
+            {"counts", counts},           {"lower", info.lower},
+            {"upper", info.upper},        {"length_unit", info.length_unit},
             {"warnings", info.warnings}};
 }
 
@@ -72,9 +68,10 @@ void add_info_command(CLI::App& app) {
     const auto arguments = std::make_shared<InfoArguments>();
     command->add_option("INPUT", arguments->inputs, "Files to look into")->required();
     command->add_flag("--json", arguments->json, "For machines");
-    command->add_option("--frame", arguments->frame, "Frame to look at of a file that has several [0]")
+    command
+        ->add_option("--frame", arguments->frame, "Frame to look at of a file that has several [0]")
         ->type_name("K")
-        ->check(CLI::NonNegativeNumber);
+        ->check(CLI::Range(0, 1 << 30).description(""));
     command->callback([arguments] { run(*arguments); });
 }
 

@@ -1,12 +1,18 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <csignal>
+#include <cstdio>
 #include <cstdlib>
 #include <exception>
 #include <string>
+#include <string_view>
+#include <vector>
 
+#include "base/text.h"
 #include "commands.h"
 #include "inktrace/inktrace.h"
+#include "messages.h"
 
 namespace {
 
@@ -29,40 +35,62 @@ std::string formats() {
     return text;
 }
 
-int report_usage(const CLI::App& app, const CLI::ParseError& error) {
-    if (error.get_exit_code() == 0) return app.exit(error);  // --help and --version
-    std::string message = error.what();
-    if (const auto* extras = dynamic_cast<const CLI::ExtrasError*>(&error)) {
-        (void)extras;
-        const std::size_t dashes = message.find("--");
-        if (dashes != std::string::npos) {
-            const std::string name = message.substr(dashes + 2);
-            try {
-                (void)inktrace::Settings().get(name.substr(0, name.find_first_of(" =")));
-            } catch (const inktrace::Error& unknown) {
-                message = unknown.what();
-            }
+/// What is wrong with the first argument that nothing wanted, and what may have been meant.
+std::string unknown_argument(const CLI::App& app) {
+    const auto commands = app.get_subcommands();
+    const CLI::App& asked = commands.empty() ? app : *commands.front();
+    std::string word = app.remaining(true).front();
+    word.resize(std::min(word.find('='), word.size()));
+
+    const bool is_flag = word.starts_with('-');
+    std::vector<std::string_view> known;
+    if (is_flag) {
+        for (const CLI::Option* option : asked.get_options()) {
+            known.insert(known.end(), option->get_lnames().begin(), option->get_lnames().end());
+        }
+    } else {
+        for (const CLI::App* command : asked.get_subcommands({})) {
+            known.push_back(command->get_name());
         }
     }
-    fmt::print(stderr, "inktrace: {}\nSee 'inktrace --help' and 'inktrace render --help'.\n", message);
+    std::string text = fmt::format("there is no {} '{}'", is_flag ? "flag" : "command", word);
+    const std::string_view dashes = is_flag ? "--" : "";
+    if (!word.starts_with(dashes)) return text;  // one letter resembles everything
+    const std::string_view name = std::string_view(word).substr(dashes.size());
+    const std::string_view guess = ink::closest(name, known);
+    if (!guess.empty()) text += fmt::format("; did you mean {}{}?", dashes, guess);
+    return text;
+}
+
+int report_usage(std::string_view problem) {
+    inktrace::cli::say(fmt::format(
+        "inktrace: {}\nSee 'inktrace --help' and 'inktrace render --help'.\n", problem));
     return kBadUsage;
 }
 
 int run(int argc, char** argv) {
-    CLI::App app("Inktrace draws molecules, particles and meshes with feature lines of exact width.",
-                 "inktrace");
+    CLI::App app(
+        "Inktrace draws molecules, particles and meshes with feature lines of exact width.",
+        "inktrace");
     app.set_version_flag("--version", std::string("inktrace ") + inktrace::version());
-    app.require_subcommand(1);
     app.footer(formats);
     inktrace::cli::add_render_command(app);
     inktrace::cli::add_info_command(app);
     try {
         app.parse(argc, argv);
+        if (app.get_subcommands().empty()) return report_usage("a command is missing");
+    } catch (const CLI::ExtrasError&) {
+        return report_usage(unknown_argument(app));
     } catch (const CLI::ParseError& error) {
-        return report_usage(app, error);
+        if (error.get_exit_code() == 0) return app.exit(error);  // --help and --version
+        return report_usage(error.what());
     } catch (const inktrace::Error& error) {
-        fmt::print(stderr, "inktrace: {}\n", error.what());
+        inktrace::cli::say(fmt::format("inktrace: {}\n", error.what()));
         return error.kind() == inktrace::Error::Kind::usage ? kBadUsage : kBadInput;
+    }
+    if (std::fflush(stdout) != 0) {
+        inktrace::cli::say("inktrace: standard output cannot be written; check the disk\n");
+        return kBadInput;
     }
     return EXIT_SUCCESS;
 }
@@ -70,13 +98,16 @@ int run(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
-    for (const int signal : {SIGINT, SIGTERM, SIGHUP}) std::signal(signal, end_cleanly);
+    for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+        // nohup, and shells for what they run in the background, ask to have some ignored.
+        if (std::signal(signal, end_cleanly) == SIG_IGN) std::signal(signal, SIG_IGN);
+    }
     // A full disk quota or a closed pipe then fails the write, which says so and cleans up.
     for (const int signal : {SIGXFSZ, SIGPIPE}) std::signal(signal, SIG_IGN);
     try {
         return run(argc, argv);
     } catch (const std::exception& error) {
-        fmt::print(stderr, "inktrace: {}\n", error.what());
+        inktrace::cli::say(fmt::format("inktrace: {}\n", error.what()));
         return kBadInput;
     }
 }

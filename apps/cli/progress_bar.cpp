@@ -3,8 +3,9 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <cstdio>
 #include <string>
+
+#include "messages.h"
 
 namespace inktrace::cli {
 
@@ -19,7 +20,7 @@ constexpr int kBarWidth = 30;
 ProgressBar::ProgressBar(bool wanted) : enabled_(wanted && isatty(STDERR_FILENO) == 1) {}
 
 ProgressBar::~ProgressBar() {
-    if (drawn_) fmt::print(stderr, "\r\033[K");
+    if (drawn_) say("\r\033[K");
 }
 
 void ProgressBar::update(double share, double megapixels) {
@@ -32,10 +33,9 @@ void ProgressBar::update(double share, double megapixels) {
     const double seconds = std::chrono::duration<double>(now - start_).count();
     const int left = static_cast<int>(seconds / share - seconds + 0.5);
     const int filled = static_cast<int>(share * kBarWidth);
-    fmt::print(stderr, "\r[{:<{}}] {:3.0f} %  {:.2f} Mpixel/s  {}:{:02} left\033[K",
-               std::string(static_cast<std::size_t>(filled), '#'), kBarWidth, share * 100.0,
-               megapixels * share / seconds, left / 60, left % 60);
-    std::fflush(stderr);
+    say(fmt::format("\r[{:<{}}] {:3.0f} %  {:.2f} Mpixel/s  {}:{:02} left\033[K",
+                    std::string(static_cast<std::size_t>(filled), '#'), kBarWidth, share * 100.0,
+                    megapixels * share / seconds, left / 60, left % 60));
 }
 
 }  // namespace inktrace::cli

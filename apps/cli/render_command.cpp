@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 #include <sys/resource.h>
+#include <unistd.h>
 
 #include <chrono>
 #include <filesystem>
@@ -12,6 +13,7 @@
 
 #include "commands.h"
 #include "inktrace/inktrace.h"
+#include "messages.h"
 #include "progress_bar.h"
 #include "settings_flags.h"
 
@@ -44,13 +46,11 @@ std::uint64_t peak_rss_bytes() {
 
 nlohmann::ordered_json to_json(const RenderArguments& arguments, const Picture& picture,
                                const Report& report) {
-    nlohmann::ordered_json json{{"width", picture.width()},
-                                {"height", picture.height()},
-                                {"threads", picture.stats().threads},
-                                {"method", arguments.settings.get("method")},
-                                {"primitives", report.primitives},
-                                {"load_ms", report.load_ms},
-                                {"build_ms", report.build_ms}};
+    nlohmann::ordered_json json{
+        {"width", picture.width()},           {"height", picture.height()},
+        {"threads", picture.stats().threads}, {"method", arguments.settings.get("method")},
+        {"primitives", report.primitives},    {"load_ms", report.load_ms},
+        {"build_ms", report.build_ms}};
     const auto list = [&](double RenderStats::*time) {
         auto times = nlohmann::ordered_json::array();
         for (const RenderStats& stats : report.renders) times.push_back(stats.*time);
@@ -66,14 +66,32 @@ nlohmann::ordered_json to_json(const RenderArguments& arguments, const Picture& 
     return json;
 }
 
-void write_stats(const std::string& file, const nlohmann::ordered_json& json) {
+[[noreturn]] void refuse_stats(const std::filesystem::path& file) {
+    throw Error(Error::Kind::input, fmt::format("{}: cannot write the statistics; check that the "
+                                                "folder exists, may be written and has space",
+                                                file.string()));
+}
+
+/// Says before the work begins what would go wrong after it.
+void check_stats_file(const std::filesystem::path& file) {
+    if (file.empty()) return;
+    std::error_code missing;
+    const std::filesystem::path folder = file.has_parent_path() ? file.parent_path() : ".";
+    const bool exists = std::filesystem::exists(file, missing);
+    if (std::filesystem::is_directory(file, missing) ||
+        access((exists ? file : folder).c_str(), W_OK) != 0) {
+        refuse_stats(file);
+    }
+}
+
+void write_stats(const std::filesystem::path& file, const nlohmann::ordered_json& json) {
     std::ofstream out(file);
     out << json.dump(2) << '\n';
     out.close();
-    if (!out) {
-        throw Error(Error::Kind::input,
-                    fmt::format("{}: cannot write the statistics; check the folder", file));
-    }
+    if (out) return;
+    std::error_code failure;
+    if (std::filesystem::is_regular_file(file, failure)) std::filesystem::remove(file, failure);
+    refuse_stats(file);
 }
 
 Scene load(const RenderArguments& arguments) {
@@ -82,7 +100,7 @@ Scene load(const RenderArguments& arguments) {
     for (const std::string& input : arguments.inputs) {
         const FileInfo info = scene.load(input, frame);
         for (const std::string& warning : info.warnings) {
-            fmt::print(stderr, "{}: warning: {}\n", input, warning);
+            say(fmt::format("{}: warning: {}\n", input, warning));
         }
     }
     return scene;
@@ -95,6 +113,8 @@ double ms_since(std::chrono::steady_clock::time_point start) {
 
 void run(const RenderArguments& arguments) {
     RenderOptions options = options_for_output(arguments.output);
+    validate(arguments.settings, options);
+    check_stats_file(arguments.stats_file);
     const auto start = std::chrono::steady_clock::now();
     Report report;
     Scene scene = load(arguments);
@@ -117,8 +137,9 @@ void run(const RenderArguments& arguments) {
         write_stats(arguments.stats_file, to_json(arguments, *picture, report));
     }
     if (!arguments.quiet) {
-        fmt::print(stderr, "{}: {} x {} pixels, {} primitives, {:.2f} s\n", arguments.output,
-                   picture->width(), picture->height(), report.primitives, ms_since(start) / 1000);
+        say(fmt::format("{}: {} x {} pixels, {} primitives, {:.2f} s\n", arguments.output,
+                        picture->width(), picture->height(), report.primitives,
+                        ms_since(start) / 1000));
     }
 }
 
@@ -128,14 +149,15 @@ void add_render_command(CLI::App& app) {
     CLI::App* command = app.add_subcommand("render", "Draw files as one picture");
     const auto arguments = std::make_shared<RenderArguments>();
     command->add_option("INPUT", arguments->inputs, "Files to draw together")->required();
-    command->add_option("-o,--output", arguments->output, "Picture to write: .png, .jpg, .tiff, .exr")
+    command
+        ->add_option("-o,--output", arguments->output, "Picture to write: .png, .jpg, .tiff, .exr")
         ->type_name("FILE")
         ->required()
         ->group("Picture");
     add_setting_flags(*command, arguments->settings);
     command->add_option("--repeat", arguments->repeat, "Render this many times, to measure [1]")
         ->type_name("K")
-        ->check(CLI::Range(1, 1000000))
+        ->check(CLI::Range(1, 1000000).description(""))
         ->group("Run");
     command->add_option("--stats", arguments->stats_file, "Write times and counts as JSON")
         ->type_name("FILE")

@@ -20,7 +20,8 @@ void add_setting_flags(CLI::App& command, Settings& settings) {
                 help)
             ->type_name(info.value)
             ->group(info.topic)
-            ->expected(1);
+            ->expected(1)
+            ->take_last();  // so that a script can add to the flags that it was given
     }
 }
 

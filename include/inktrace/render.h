@@ -68,6 +68,10 @@ struct RenderOptions {
 /// Error (input) where the file cannot be written, before any time is spent.
 RenderOptions options_for_output(const std::filesystem::path& file);
 
+/// Throws Error (usage) where `Renderer::render` would refuse the settings whatever the scene, as a
+/// picture that does not fit into memory: worth asking before a large scene is loaded.
+void validate(const Settings& settings, const RenderOptions& options = {});
+
 /// A scene made ready for rays. Build it once, render it often.
 class Renderer {
   public:

@@ -39,6 +39,11 @@ Renderer::~Renderer() = default;
 
 double Renderer::build_ms() const { return impl_->build_ms; }
 
+void validate(const Settings& settings, const RenderOptions& options) {
+    const int color_bytes = (options.display ? 4 : 0) + (options.linear ? 16 : 0);
+    ink::guard([&] { ink::validate(settings.impl().settings, color_bytes); });
+}
+
 namespace {
 
 /// The flags that make this picture again. What the picture does not depend on is left out: the
@@ -55,6 +60,7 @@ ink::Metadata metadata(const Settings& settings) {
 }  // namespace
 
 Picture Renderer::render(const Settings& settings, const RenderOptions& options) const {
+    validate(settings, options);
     return ink::guard([&] {
         const ink::Settings& inner = settings.impl().settings;
         ink::RenderStats stats;
@@ -63,17 +69,16 @@ Picture Renderer::render(const Settings& settings, const RenderOptions& options)
             const double megapixels = static_cast<double>(inner.size.pixels()) * 1e-6;
             progress = [&, megapixels](double share) { options.progress(share, megapixels); };
         }
-        ink::Film film = ink::render(
-            impl_->scene, *impl_->tracer, inner,
-            {.display = options.display, .linear = options.linear},
-            {.progress = progress, .cancel = options.cancel}, &stats);
-        return Picture(std::make_unique<Picture::Impl>(Picture::Impl{
-            .film = std::move(film),
-            .dpi = inner.dpi,
-            .aovs = inner.aovs,
-            .metadata = metadata(settings),
-            .stats = {stats.render_ms, stats.trace_ms, stats.lines_ms, stats.shade_ms, stats.rays,
-                      stats.threads}}));
+        ink::Film film = ink::render(impl_->scene, *impl_->tracer, inner,
+                                     {.display = options.display, .linear = options.linear},
+                                     {.progress = progress, .cancel = options.cancel}, &stats);
+        return Picture(std::make_unique<Picture::Impl>(
+            Picture::Impl{.film = std::move(film),
+                          .dpi = inner.dpi,
+                          .aovs = inner.aovs,
+                          .metadata = metadata(settings),
+                          .stats = {stats.render_ms, stats.trace_ms, stats.lines_ms, stats.shade_ms,
+                                    stats.rays, stats.threads}}));
     });
 }
 

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <array>
@@ -15,10 +16,14 @@ namespace ink {
 
 double Length::pixels(double dpi, int picture_height) const {
     switch (unit) {
-        case Unit::px: return value;
-        case Unit::pt: return value * dpi / 72.0;
-        case Unit::mm: return value * dpi / 25.4;
-        case Unit::percent: return value * picture_height / 100.0;
+        case Unit::px:
+            return value;
+        case Unit::pt:
+            return value * dpi / 72.0;
+        case Unit::mm:
+            return value * dpi / 25.4;
+        case Unit::percent:
+            return value * picture_height / 100.0;
     }
     return value;
 }
@@ -39,7 +44,8 @@ double read_number(std::string_view text, double least, double most) {
 int read_int(std::string_view text, int least, int most) {
     const auto value = parse_int(text);
     if (!value || *value < least || *value > most) {
-        throw UsageError(fmt::format("'{}' is not a whole number from {} to {}", text, least, most));
+        throw UsageError(
+            fmt::format("'{}' is not a whole number from {} to {}", text, least, most));
     }
     return static_cast<int>(*value);
 }
@@ -48,7 +54,8 @@ Rgb8 read_color(std::string_view text) {
     const auto color = parse_color(text);
     if (!color) {
         throw UsageError(fmt::format(
-            "'{}' is not a colour; write a name such as white, #rrggbb, or r,g,b from 0 to 255", text));
+            "'{}' is not a colour; write a name such as white, #rrggbb, or r,g,b from 0 to 255",
+            text));
     }
     return *color;
 }
@@ -58,12 +65,14 @@ Size read_size(std::string_view text) {
     constexpr int kMost = 65500;
     const auto sides = split(text, 'x');
     if (sides.size() != 2) {
-        throw UsageError(fmt::format("'{}' is not a size; write WIDTHxHEIGHT, as in 1024x768", text));
+        throw UsageError(
+            fmt::format("'{}' is not a size; write WIDTHxHEIGHT, as in 1024x768", text));
     }
     const auto side = [&](std::string_view part) {
         const auto value = parse_int(part);
         if (!value || *value < 1 || *value > kMost) {
-            throw UsageError(fmt::format("'{}' has a side that is not from 1 to {} pixels", text, kMost));
+            throw UsageError(
+                fmt::format("'{}' has a side that is not from 1 to {} pixels", text, kMost));
         }
         return static_cast<int>(*value);
     };
@@ -79,8 +88,20 @@ Vec3d read_vector(std::string_view text) {
         good = value && std::isfinite(*value);
         if (good) v[i] = *value;
     }
-    if (!good) throw UsageError(fmt::format("'{}' is not a vector; write X,Y,Z, as in 0,1,0", text));
+    if (!good)
+        throw UsageError(fmt::format("'{}' is not a vector; write X,Y,Z, as in 0,1,0", text));
     return {v[0], v[1], v[2]};
+}
+
+/// Empty text stands for what is chosen automatically.
+template <class Read>
+auto read_optional(std::string_view text, const Read& read) -> std::optional<decltype(read(text))> {
+    if (text.empty()) return std::nullopt;
+    return read(text);
+}
+
+double read_view_height(std::string_view text) {
+    return text == "auto" ? 0.0 : read_number(text, 1e-30, 1e30);
 }
 
 std::string print(Vec3d v) { return fmt::format("{},{},{}", v.x, v.y, v.z); }
@@ -99,7 +120,8 @@ Length read_length(std::string_view text) {
     const auto value = parse_double(number);
     if (!value || !(*value > 0.0) || !std::isfinite(*value)) {
         throw UsageError(fmt::format(
-            "'{}' is not a width; write a positive number with px, pt, mm or %, as in 2px or 0.5pt", text));
+            "'{}' is not a width; write a positive number with px, pt, mm or %, as in 2px or 0.5pt",
+            text));
     }
     length.value = *value;
     return length;
@@ -110,13 +132,21 @@ template <class T>
 struct Words {
     std::vector<std::pair<std::string_view, T>> entries;
 
-    T read(std::string_view text) const {
+    std::optional<T> find(std::string_view text) const {
         for (const auto& [word, value] : entries) {
             if (word == text) return value;
         }
+        return std::nullopt;
+    }
+    std::string all_words() const {
         std::vector<std::string_view> words;
         for (const auto& entry : entries) words.push_back(entry.first);
-        throw UsageError(fmt::format("'{}' is not one of {}", text, fmt::join(words, ", ")));
+        return fmt::format("{}", fmt::join(words, ", "));
+    }
+
+    T read(std::string_view text) const {
+        if (const auto value = find(text)) return *value;
+        throw UsageError(fmt::format("'{}' is not one of {}", text, all_words()));
     }
     std::string print(T value) const {
         for (const auto& [word, entry] : entries) {
@@ -133,8 +163,14 @@ struct Words {
             return list;
         }
         for (const std::string_view word : split(text, ',')) {
-            const T value = read(word);
-            if (std::ranges::find(list, value) == list.end()) list.push_back(value);
+            const auto value = find(word);
+            if (!value) {
+                throw UsageError(
+                    fmt::format("'{}' is not one of {}; several go with commas, all "
+                                "and none stand alone",
+                                word, all_words()));
+            }
+            if (std::ranges::find(list, *value) == list.end()) list.push_back(*value);
         }
         return list;
     }
@@ -146,9 +182,14 @@ struct Words {
     }
 };
 
-const Words<View> kViews{{{"auto", View::automatic}, {"front", View::front}, {"back", View::back},
-                          {"left", View::left}, {"right", View::right}, {"top", View::top},
-                          {"bottom", View::bottom}, {"iso", View::iso}}};
+const Words<View> kViews{{{"auto", View::automatic},
+                          {"front", View::front},
+                          {"back", View::back},
+                          {"left", View::left},
+                          {"right", View::right},
+                          {"top", View::top},
+                          {"bottom", View::bottom},
+                          {"iso", View::iso}}};
 const Words<Method> kMethods{{{"stencil", Method::stencil}}};
 const Words<LineType> kLineTypes{
     {{"silhouette", LineType::silhouette}, {"intersection", LineType::intersection}}};
@@ -156,12 +197,18 @@ const Words<IdLevel> kIdLevels{
     {{"primitive", IdLevel::primitive}, {"part", IdLevel::part}, {"object", IdLevel::object}}};
 const Words<Compose> kComposes{
     {{"shaded", Compose::shaded}, {"lines", Compose::lines}, {"both", Compose::both}}};
-const Words<ShadeMode> kShadeModes{{{"lambert", ShadeMode::lambert}, {"toon", ShadeMode::toon},
-                                    {"flat", ShadeMode::flat}, {"none", ShadeMode::none}}};
-const Words<LineBlend> kBlends{{{"auto", LineBlend::automatic}, {"display", LineBlend::display},
+const Words<ShadeMode> kShadeModes{{{"lambert", ShadeMode::lambert},
+                                    {"toon", ShadeMode::toon},
+                                    {"flat", ShadeMode::flat},
+                                    {"none", ShadeMode::none}}};
+const Words<LineBlend> kBlends{{{"auto", LineBlend::automatic},
+                                {"display", LineBlend::display},
                                 {"linear", LineBlend::linear}}};
-const Words<Aov> kAovs{{{"id", Aov::id}, {"depth", Aov::depth}, {"normal", Aov::normal},
-                        {"position", Aov::position}, {"lines", Aov::lines}}};
+const Words<Aov> kAovs{{{"id", Aov::id},
+                        {"depth", Aov::depth},
+                        {"normal", Aov::normal},
+                        {"position", Aov::position},
+                        {"lines", Aov::lines}}};
 
 Metric read_metric(std::string_view text) {
     if (text == "linear") return {Metric::Kind::linear};
@@ -175,9 +222,12 @@ Metric read_metric(std::string_view text) {
 
 std::string print(const Metric& metric) {
     switch (metric.kind) {
-        case Metric::Kind::linear: return "linear";
-        case Metric::Kind::power: return fmt::format("power:{}", metric.exponent);
-        case Metric::Kind::solid: return "solid";
+        case Metric::Kind::linear:
+            return "linear";
+        case Metric::Kind::power:
+            return fmt::format("power:{}", metric.exponent);
+        case Metric::Kind::solid:
+            return "solid";
     }
     return {};
 }
@@ -193,16 +243,28 @@ AntiAliasing read_aa(std::string_view text) {
 
 std::string print(const AntiAliasing& aa) {
     switch (aa.kind) {
-        case AntiAliasing::Kind::none: return "none";
-        case AntiAliasing::Kind::stencil: return "stencil";
-        case AntiAliasing::Kind::multisample: return fmt::format("multisample:{}", aa.samples);
+        case AntiAliasing::Kind::none:
+            return "none";
+        case AntiAliasing::Kind::stencil:
+            return "stencil";
+        case AntiAliasing::Kind::multisample:
+            return fmt::format("multisample:{}", aa.samples);
     }
     return {};
 }
 
 void read_background(Settings& settings, std::string_view text) {
-    settings.shading.transparent_background = text == "transparent";
-    if (!settings.shading.transparent_background) settings.shading.background = read_color(text);
+    const bool transparent = text == "transparent";
+    if (!transparent) settings.shading.background = read_color(text);
+    settings.shading.transparent_background = transparent;
+}
+
+int read_tile(std::string_view text) {
+    const int side = read_int(text, kBlockSide, 4096);
+    if (side % kBlockSide != 0) {
+        throw UsageError(fmt::format("'{}' is not a multiple of {}", text, kBlockSide));
+    }
+    return side;
 }
 
 std::vector<Setting> make_table() {
@@ -212,18 +274,23 @@ std::vector<Setting> make_table() {
         {"size", "Picture", "WxH", "Width and height in pixels",
          [](S& s, Text t) { s.size = read_size(t); },
          [](const S& s) { return fmt::format("{}x{}", s.size.width, s.size.height); }},
-        {"dpi", "Picture", "D", "Pixels per inch: what pt and mm mean, and how large the picture prints",
+        {"dpi", "Picture", "D",
+         "Pixels per inch: what pt and mm mean, and how large the picture prints",
          [](S& s, Text t) { s.dpi = read_number(t, 1, 100000); },
          [](const S& s) { return fmt::format("{}", s.dpi); }},
-        {"background", "Picture", "COLOR", "Colour behind the scene, or transparent", read_background,
+        {"background", "Picture", "COLOR", "Colour behind the scene, or transparent",
+         read_background,
          [](const S& s) {
-             return s.shading.transparent_background ? "transparent" : to_string(s.shading.background);
+             return s.shading.transparent_background ? "transparent"
+                                                     : to_string(s.shading.background);
          }},
-        {"compose", "Picture", "WHAT", "What to draw: shaded (no lines), lines (alone, on white) or both",
+        {"compose", "Picture", "WHAT",
+         "What to draw: shaded (no lines), lines (alone, on white) or both",
          [](S& s, Text t) { s.compose = kComposes.read(t); },
          [](const S& s) { return kComposes.print(s.compose); }},
         {"aov", "Picture", "LIST",
-         "More to write: id, depth, normal, position, lines; channels of an EXR, else pictures beside it",
+         "More to write: id, depth, normal, position, lines; channels of an EXR, else pictures "
+         "beside it",
          [](S& s, Text t) { s.aovs = kAovs.read_list(t); },
          [](const S& s) { return kAovs.print_list(s.aovs); }},
         {"frame", "Input", "K", "Frame to draw of a file that has several, from 0",
@@ -236,20 +303,20 @@ std::vector<Setting> make_table() {
          [](S& s, Text t) { s.view.view = kViews.read(t); },
          [](const S& s) { return kViews.print(s.view.view); }},
         {"eye", "View", "X,Y,Z", "Where the viewer stands, in the units of the file",
-         [](S& s, Text t) { s.view.eye = read_vector(t); },
+         [](S& s, Text t) { s.view.eye = read_optional(t, read_vector); },
          [](const S& s) { return s.view.eye ? print(*s.view.eye) : std::string(); }},
         {"look-at", "View", "X,Y,Z", "What is in the middle of the picture",
-         [](S& s, Text t) { s.view.look_at = read_vector(t); },
+         [](S& s, Text t) { s.view.look_at = read_optional(t, read_vector); },
          [](const S& s) { return s.view.look_at ? print(*s.view.look_at) : std::string(); }},
         {"up", "View", "X,Y,Z", "Direction that points up in the picture",
-         [](S& s, Text t) { s.view.up = read_vector(t); },
+         [](S& s, Text t) { s.view.up = read_optional(t, read_vector); },
          [](const S& s) { return s.view.up ? print(*s.view.up) : std::string(); }},
         {"fov", "View", "DEG", "Vertical field of view",
          [](S& s, Text t) { s.view.fov_deg = read_number(t, 0.001, 170); },
          [](const S& s) { return fmt::format("{}", s.view.fov_deg); }},
         {"orthographic", "View", "HEIGHT",
          "Parallel projection; the height of the view in the units of the file, or auto to fit",
-         [](S& s, Text t) { s.view.orthographic = t == "auto" ? 0.0 : read_number(t, 1e-30, 1e30); },
+         [](S& s, Text t) { s.view.orthographic = read_optional(t, read_view_height); },
          [](const S& s) {
              if (!s.view.orthographic) return std::string();
              return *s.view.orthographic == 0.0 ? "auto" : fmt::format("{}", *s.view.orthographic);
@@ -262,7 +329,8 @@ std::vector<Setting> make_table() {
          [](S& s, Text t) { s.method = kMethods.read(t); },
          [](const S& s) { return kMethods.print(s.method); }},
         {"lines", "Lines", "LIST",
-         "silhouette, intersection, all or none; method stencil cannot tell the two apart and draws "
+         "silhouette, intersection, all or none; method stencil cannot tell the two apart and "
+         "draws "
          "both for either",
          [](S& s, Text t) { s.lines = kLineTypes.read_list(t); },
          [](const S& s) { return kLineTypes.print_list(s.lines); }},
@@ -276,12 +344,16 @@ std::vector<Setting> make_table() {
          [](S& s, Text t) { s.line_color = read_color(t); },
          [](const S& s) { return to_string(s.line_color); }},
         {"ids", "Lines", "LEVEL",
-         "Between what lines run: primitive (atoms, particles, triangles), part (chains, groups) or "
+         "Between what lines run: primitive (atoms, particles, triangles), part (chains, groups) "
+         "or "
          "object; by default atoms, particles and whole meshes",
-         [](S& s, Text t) { s.ids = kIdLevels.read(t); },
+         [](S& s, Text t) {
+             s.ids = read_optional(t, [](Text word) { return kIdLevels.read(word); });
+         },
          [](const S& s) { return s.ids ? kIdLevels.print(*s.ids) : std::string(); }},
         {"metric", "Lines", "NAME",
-         "Profile across a line: linear (soft, the paper's equation 2), power:P (bolder, equation 3 "
+         "Profile across a line: linear (soft, the paper's equation 2), power:P (bolder, equation "
+         "3 "
          "has P = 10) or solid",
          [](S& s, Text t) { s.metric = read_metric(t); },
          [](const S& s) { return print(s.metric); }},
@@ -289,29 +361,27 @@ std::vector<Setting> make_table() {
          [](S& s, Text t) { s.rings = read_int(t, 1, 64); },
          [](const S& s) { return fmt::format("{}", s.rings); }},
         {"line-blend", "Lines", "SPACE",
-         "Values in which lines are mixed with the picture: display (sRGB), linear, or auto: linear "
+         "Values in which lines are mixed with the picture: display (sRGB), linear, or auto: "
+         "linear "
          "in an EXR, else display",
          [](S& s, Text t) { s.line_blend = kBlends.read(t); },
          [](const S& s) { return kBlends.print(s.line_blend); }},
 
-        {"shade", "Shading", "MODE", "lambert (diffuse), toon (in steps), flat (colours only) or none",
+        {"shade", "Shading", "MODE",
+         "lambert (diffuse), toon (in steps), flat (colours only) or none",
          [](S& s, Text t) { s.shading.mode = kShadeModes.read(t); },
          [](const S& s) { return kShadeModes.print(s.shading.mode); }},
         {"aa", "Shading", "MODE",
-         "Smoothing of what is not a line: none, stencil (shade the stencil's rays too) or multisample:S",
-         [](S& s, Text t) { s.aa = read_aa(t); },
-         [](const S& s) { return print(s.aa); }},
+         "Smoothing of what is not a line: none, stencil (shade the stencil's rays too) or "
+         "multisample:S",
+         [](S& s, Text t) { s.aa = read_aa(t); }, [](const S& s) { return print(s.aa); }},
 
         {"threads", "Run", "T", "Threads to use; 0 for all. The picture does not depend on it",
          [](S& s, Text t) { s.threads = read_int(t, 0, 1024); },
          [](const S& s) { return fmt::format("{}", s.threads); }},
-        {"tile", "Run", "PX", "Side of the tiles that threads work on. The picture does not depend on it",
-         [](S& s, Text t) {
-             s.tile = read_int(t, 4, 4096);
-             if (s.tile % kBlockSide != 0) {
-                 throw UsageError(fmt::format("'{}' is not a multiple of {}", t, kBlockSide));
-             }
-         },
+        {"tile", "Run", "PX",
+         "Side of the tiles that threads work on. The picture does not depend on it",
+         [](S& s, Text t) { s.tile = read_tile(t); },
          [](const S& s) { return fmt::format("{}", s.tile); }},
     };
 }
@@ -347,11 +417,53 @@ const Setting& find_setting(std::string_view name) {
                          : fmt::format("there is no setting '{}'; did you mean {}?", name, guess));
 }
 
-void validate(const Settings& settings) {
+namespace {
+
+/// Planes of 4-byte numbers that an AOV keeps.
+int plane_count(Aov aov) {
+    switch (aov) {
+        case Aov::id:
+        case Aov::normal:
+        case Aov::position:
+            return 3;
+        case Aov::depth:
+        case Aov::lines:
+            return 1;
+    }
+    return 0;
+}
+
+double physical_memory_bytes() {
+    return static_cast<double>(sysconf(_SC_PHYS_PAGES)) *
+           static_cast<double>(sysconf(_SC_PAGE_SIZE));
+}
+
+/// Memory is granted before it is there: a picture that is too large would not fail to start, but
+/// get the program killed on the way.
+void check_memory(const Settings& settings, int color_bytes) {
+    int bytes = color_bytes;
+    for (const Aov aov : settings.aovs) bytes += 4 * plane_count(aov);
+    const double needed = static_cast<double>(settings.size.pixels()) * bytes;
+    const double memory = physical_memory_bytes();
+    constexpr double kMostOfMemory = 0.8;  // the rest is for the scene, the encoder and the system
+    if (needed <= kMostOfMemory * memory) return;
+    throw UsageError(fmt::format(
+        "--size: {}x{} needs {:.1f} GB for its pixels, but this machine has {:.1f} GB of memory, "
+        "of "
+        "which a picture may take {:.0f} %; make it smaller{}",
+        settings.size.width, settings.size.height, needed * 1e-9, memory * 1e-9,
+        kMostOfMemory * 100.0, settings.aovs.empty() ? "" : " or ask for less with --aov"));
+}
+
+}  // namespace
+
+void validate(const Settings& settings, int color_bytes) {
+    check_memory(settings, color_bytes);
     const double width = settings.line_width_px();
     constexpr double kWidest = 1000.0;
     if (!(width <= kWidest)) {
-        throw UsageError(fmt::format("--line-width: comes to {:.0f} pixels; the most is {}", width, kWidest));
+        throw UsageError(
+            fmt::format("--line-width: comes to {:.0f} pixels; the most is {}", width, kWidest));
     }
 }
 
