@@ -12,8 +12,8 @@ namespace inktrace {
 /// "0.1.0"
 const char* version();
 
-/// Removes what `Picture::save` has begun and not finished, for a program that is about to end. Safe
-/// to call from a signal handler.
+/// Removes what `Picture::save` has begun and not finished, for a program that is about to end.
+/// Safe to call from a signal handler.
 void remove_unfinished_files() noexcept;
 
 }  // namespace inktrace

@@ -22,6 +22,7 @@ struct RenderStats {
     double lines_ms = 0.0;
     double shade_ms = 0.0;
     std::uint64_t rays = 0;
+    std::uint64_t crossings = 0;  ///< of lines with the lattice, located by method "edges"
     int threads = 0;
 };
 

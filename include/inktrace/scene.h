@@ -44,7 +44,7 @@ class Scene {
                      std::span<const std::uint8_t> colors = {});
 
     /// Adds a triangle mesh: x, y, z of each vertex, three vertex indices of each triangle. Normals
-    /// are smooth where triangles meet at less than 35 degrees. Throws Error (input) for an index
+    /// are smooth but for creases. Throws Error (input) for an index
     /// or a coordinate that is not valid.
     void add_mesh(std::string_view name, std::span<const float> vertices,
                   std::span<const std::uint32_t> triangles,

@@ -61,6 +61,11 @@ void Picture::save(const std::filesystem::path& file) const {
     ink::guard([&] {
         const ink::ImageFormat format = picture_format(file);
         if (format == ink::ImageFormat::exr) {
+            if (impl_->film.channels().channels.empty()) {
+                throw ink::UsageError(fmt::format(
+                    "{}: an EXR holds linear pixels, and none were made; set RenderOptions::linear",
+                    file.string()));
+            }
             ink::write_exr(file, impl_->film.channels(), impl_->dpi, impl_->metadata);
             return;
         }

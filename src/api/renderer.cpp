@@ -54,7 +54,9 @@ ink::Metadata metadata(const Settings& settings) {
         if (ink::find_setting(name).topic == "Run") continue;
         flags += (flags.empty() ? "--" : " --") + name + " " + value;
     }
-    return {{"Software", std::string("Inktrace ") + version()}, {"Settings", flags}};
+    ink::Metadata entries{{"Software", std::string("Inktrace ") + version()}};
+    if (!flags.empty()) entries.emplace_back("Settings", flags);
+    return entries;
 }
 
 }  // namespace
@@ -72,13 +74,18 @@ Picture Renderer::render(const Settings& settings, const RenderOptions& options)
         ink::Film film = ink::render(impl_->scene, *impl_->tracer, inner,
                                      {.display = options.display, .linear = options.linear},
                                      {.progress = progress, .cancel = options.cancel}, &stats);
-        return Picture(std::make_unique<Picture::Impl>(
-            Picture::Impl{.film = std::move(film),
-                          .dpi = inner.dpi,
-                          .aovs = inner.aovs,
-                          .metadata = metadata(settings),
-                          .stats = {stats.render_ms, stats.trace_ms, stats.lines_ms, stats.shade_ms,
-                                    stats.rays, stats.threads}}));
+        return Picture(
+            std::make_unique<Picture::Impl>(Picture::Impl{.film = std::move(film),
+                                                          .dpi = inner.dpi,
+                                                          .aovs = inner.aovs,
+                                                          .metadata = metadata(settings),
+                                                          .stats = {.render_ms = stats.render_ms,
+                                                                    .trace_ms = stats.trace_ms,
+                                                                    .lines_ms = stats.lines_ms,
+                                                                    .shade_ms = stats.shade_ms,
+                                                                    .rays = stats.rays,
+                                                                    .crossings = stats.crossings,
+                                                                    .threads = stats.threads}}));
     });
 }
 

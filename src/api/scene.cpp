@@ -41,8 +41,8 @@ class LocalCoordinates {
         return frame_.from_world({p[0], p[1], p[2]});
     }
     static bool valid(std::span<const float> p) {
-        return std::ranges::all_of(
-            p.first(3), [](float x) { return std::abs(x) <= ink::kLargestCoordinate; });
+        return std::ranges::all_of(p.first(3),
+                                   [](float x) { return std::abs(x) <= ink::kLargestCoordinate; });
     }
 
   private:
@@ -53,9 +53,10 @@ ink::Object make_spheres(std::string_view name, std::span<const float> values,
                          std::span<const std::uint8_t> colors) {
     const std::size_t count = values.size() / 4;
     if (values.size() % 4 != 0 || (!colors.empty() && colors.size() != count * 3)) {
-        throw ink::Error(fmt::format("{}: expected x, y, z, radius of each sphere and no colours or "
-                                     "r, g, b of each",
-                                     name));
+        throw ink::Error(
+            fmt::format("{}: expected x, y, z, radius of each sphere and no colours or "
+                        "r, g, b of each",
+                        name));
     }
     const LocalCoordinates local(values);
     ink::Spheres shape;
@@ -76,8 +77,7 @@ ink::Object make_spheres(std::string_view name, std::span<const float> values,
 }
 
 ink::Object make_mesh(std::string_view name, std::span<const float> vertices,
-                      std::span<const std::uint32_t> triangles,
-                      std::array<std::uint8_t, 3> color) {
+                      std::span<const std::uint32_t> triangles, std::array<std::uint8_t, 3> color) {
     if (vertices.size() % 3 != 0 || triangles.size() % 3 != 0) {
         throw ink::Error(fmt::format(
             "{}: expected x, y, z of each vertex and three indices of each triangle", name));
@@ -96,8 +96,7 @@ ink::Object make_mesh(std::string_view name, std::span<const float> vertices,
         mesh.triangles.push_back(corners);
     }
     ink::weld(mesh);
-    constexpr float kCreaseAngleDeg = 35.0F;
-    ink::smooth_normals(mesh, kCreaseAngleDeg);
+    ink::smooth_normals(mesh);
     return {.name = std::string(name),
             .kind = ink::ObjectKind::mesh,
             .frame = local.frame(),

@@ -11,13 +11,11 @@
 namespace ink {
 
 float srgb_encode(float linear) {
-    return linear <= 0.0031308F ? 12.92F * linear
-                                : 1.055F * std::pow(linear, 1.0F / 2.4F) - 0.055F;
+    return linear <= 0.0031308F ? 12.92F * linear : 1.055F * std::pow(linear, 1.0F / 2.4F) - 0.055F;
 }
 
 float srgb_decode(float display) {
-    return display <= 0.04045F ? display / 12.92F
-                               : std::pow((display + 0.055F) / 1.055F, 2.4F);
+    return display <= 0.04045F ? display / 12.92F : std::pow((display + 0.055F) / 1.055F, 2.4F);
 }
 
 Color srgb_decode(Rgb8 display) {
@@ -28,7 +26,8 @@ Color srgb_decode(Rgb8 display) {
 namespace {
 
 std::optional<Rgb8> parse_hex(std::string_view digits) {
-    if (digits.size() != 3 && digits.size() != 6) return std::nullopt;
+    const bool all_digits = digits.find_first_not_of("0123456789abcdefABCDEF") == digits.npos;
+    if (!all_digits || (digits.size() != 3 && digits.size() != 6)) return std::nullopt;
     const auto value = parse_hex_number(digits);
     if (!value) return std::nullopt;
     const auto byte = [](unsigned v) { return static_cast<std::uint8_t>(v & 0xFFU); };
@@ -42,15 +41,28 @@ std::optional<Rgb8> parse_hex(std::string_view digits) {
 std::optional<Rgb8> parse_color(std::string_view text) {
     // CSS Color Module Level 4, section 6.1: the sixteen basic keywords, and orange.
     static constexpr std::array<std::pair<std::string_view, Rgb8>, 18> kNames{{
-        {"black", {0, 0, 0}},      {"silver", {192, 192, 192}}, {"gray", {128, 128, 128}},
-        {"grey", {128, 128, 128}}, {"white", {255, 255, 255}},  {"maroon", {128, 0, 0}},
-        {"red", {255, 0, 0}},      {"purple", {128, 0, 128}},   {"fuchsia", {255, 0, 255}},
-        {"green", {0, 128, 0}},    {"lime", {0, 255, 0}},       {"olive", {128, 128, 0}},
-        {"yellow", {255, 255, 0}}, {"navy", {0, 0, 128}},       {"blue", {0, 0, 255}},
-        {"teal", {0, 128, 128}},   {"aqua", {0, 255, 255}},     {"orange", {255, 165, 0}},
+        {"black", {0, 0, 0}},
+        {"silver", {192, 192, 192}},
+        {"gray", {128, 128, 128}},
+        {"grey", {128, 128, 128}},
+        {"white", {255, 255, 255}},
+        {"maroon", {128, 0, 0}},
+        {"red", {255, 0, 0}},
+        {"purple", {128, 0, 128}},
+        {"fuchsia", {255, 0, 255}},
+        {"green", {0, 128, 0}},
+        {"lime", {0, 255, 0}},
+        {"olive", {128, 128, 0}},
+        {"yellow", {255, 255, 0}},
+        {"navy", {0, 0, 128}},
+        {"blue", {0, 0, 255}},
+        {"teal", {0, 128, 128}},
+        {"aqua", {0, 255, 255}},
+        {"orange", {255, 165, 0}},
     }};
+    const std::string word = to_lower(text);
     for (const auto& [name, color] : kNames) {
-        if (text == name) return color;
+        if (word == name) return color;
     }
     if (text.starts_with('#')) return parse_hex(text.substr(1));
 

@@ -19,7 +19,9 @@ struct alignas(64) Lanes : std::array<T, kLanes> {
         lanes.fill(value);
         return lanes;
     }
-    T& operator[](int lane) { return std::array<T, kLanes>::operator[](static_cast<std::size_t>(lane)); }
+    T& operator[](int lane) {
+        return std::array<T, kLanes>::operator[](static_cast<std::size_t>(lane));
+    }
     const T& operator[](int lane) const {
         return std::array<T, kLanes>::operator[](static_cast<std::size_t>(lane));
     }

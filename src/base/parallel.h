@@ -14,8 +14,8 @@ int hardware_threads();
 void parallel_for(std::size_t count, int threads,
                   const std::function<void(std::size_t i, std::size_t worker)>& body);
 
-/// Cuts [0, count) into ranges of at least `grain` and calls `body(begin, end)` for each, on all
-/// threads of the machine.
+/// Cuts [0, count) into ranges of about `grain` and calls `body(begin, end)` for each, on all
+/// threads of the machine. Which ranges there are is not defined.
 void parallel_ranges(std::size_t count, std::size_t grain,
                      const std::function<void(std::size_t, std::size_t)>& body);
 

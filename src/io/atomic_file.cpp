@@ -71,21 +71,15 @@ class Descriptor {
 
 std::string problem_and_remedy(int error) {
     switch (error) {
-        case ENOSPC:
-            return "no space left on device; free some or choose another folder";
-        case EDQUOT:
-            return "disk quota exceeded; free some space or choose another folder";
+        case ENOSPC: return "no space left on device; free some or choose another folder";
+        case EDQUOT: return "disk quota exceeded; free some space or choose another folder";
         case EFBIG:
             return "larger than a file may be here; see `ulimit -f`, or choose another disk";
         case EACCES:
-        case EPERM:
-            return "permission denied; change the permissions or choose another folder";
-        case EROFS:
-            return "the file system is read-only; choose another folder";
-        case ENAMETOOLONG:
-            return "the name is too long; choose a shorter one";
-        default:
-            return std::generic_category().message(error) + "; choose another folder";
+        case EPERM: return "permission denied; change the permissions or choose another folder";
+        case EROFS: return "the file system is read-only; choose another folder";
+        case ENAMETOOLONG: return "the name is too long; choose a shorter one";
+        default: return std::generic_category().message(error) + "; choose another folder";
     }
 }
 

@@ -96,14 +96,10 @@ void write_image(const std::filesystem::path& file, ImageFormat format, const Di
     assert(image.pixels.size() == image.size.pixels());
     write_whole(file, [&](ByteSink& sink) {
         switch (format) {
-            case ImageFormat::png:
-                return encode_png(sink, image, dpi, metadata);
-            case ImageFormat::jpeg:
-                return encode_jpeg(sink, image, dpi, metadata);
-            case ImageFormat::tiff:
-                return encode_tiff(sink, image, dpi, metadata);
-            case ImageFormat::exr:
-                throw EncodeError("EXR takes channels, not 8-bit pixels");
+            case ImageFormat::png: return encode_png(sink, image, dpi, metadata);
+            case ImageFormat::jpeg: return encode_jpeg(sink, image, dpi, metadata);
+            case ImageFormat::tiff: return encode_tiff(sink, image, dpi, metadata);
+            case ImageFormat::exr: throw EncodeError("EXR takes channels, not 8-bit pixels");
         }
     });
 }

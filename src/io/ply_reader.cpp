@@ -253,22 +253,14 @@ class BinaryValues {
     /// False at the end of the data.
     bool read(Type type, double& value) {
         switch (type) {
-            case Type::int8:
-                return read_as<std::int8_t>(value);
-            case Type::uint8:
-                return read_as<std::uint8_t>(value);
-            case Type::int16:
-                return read_as<std::int16_t>(value);
-            case Type::uint16:
-                return read_as<std::uint16_t>(value);
-            case Type::int32:
-                return read_as<std::int32_t>(value);
-            case Type::uint32:
-                return read_as<std::uint32_t>(value);
-            case Type::float32:
-                return read_as<float>(value);
-            case Type::float64:
-                return read_as<double>(value);
+            case Type::int8: return read_as<std::int8_t>(value);
+            case Type::uint8: return read_as<std::uint8_t>(value);
+            case Type::int16: return read_as<std::int16_t>(value);
+            case Type::uint16: return read_as<std::uint16_t>(value);
+            case Type::int32: return read_as<std::int32_t>(value);
+            case Type::uint32: return read_as<std::uint32_t>(value);
+            case Type::float32: return read_as<float>(value);
+            case Type::float64: return read_as<double>(value);
         }
         return false;
     }

@@ -16,9 +16,6 @@ namespace ink {
 
 namespace {
 
-/// Edges sharper than this stay sharp where a file brings no normals of its own.
-constexpr float kCreaseAngleDeg = 35.f;
-
 /// Distance from the origin over size beyond which 32-bit coordinates show as steps: a float keeps
 /// 1.7e7 steps to the distance, so less than 2000 across the model, about one a pixel.
 constexpr double kFarFromOrigin = 1e4;
@@ -190,7 +187,7 @@ FileContents mesh_contents(const std::filesystem::path& file, PolygonMesh polygo
     }
     check_file_normals(polygons);
     Mesh mesh = clean_mesh(file, polygons);
-    if (mesh.corner_normals.empty()) smooth_normals(mesh, kCreaseAngleDeg);
+    smooth_normals(mesh);
 
     Object object;
     object.name = model_name(file);

@@ -19,7 +19,7 @@ struct ReadOptions {
 /// What a file held, ready for a scene.
 struct FileContents {
     std::vector<Object> objects;
-    std::string format;  ///< "PDB", "mmCIF", "binary STL"
+    std::string format;       ///< "PDB", "mmCIF", "binary STL"
     std::string length_unit;  ///< "angstrom"; empty where the format does not say
     int frames = 1;
     std::vector<std::pair<std::string, std::uint64_t>> counts;  ///< ("atoms", 327), in order

@@ -4,11 +4,7 @@
 #include <bit>
 #include <cmath>
 #include <limits>
-#include <numbers>
-#include <numeric>
-#include <span>
-
-#include "base/parallel.h"
+#include <utility>
 
 namespace ink {
 
@@ -129,12 +125,14 @@ std::size_t drop_triangles_without_area(Mesh& mesh) {
     keep(mesh.faces, kept);
     keep(mesh.parts, kept);
     keep(mesh.corner_normals, kept);
+    keep(mesh.line_normals, kept);
     return dropped;
 }
 
 }  // namespace
 
 std::size_t weld(Mesh& mesh) {
+    mesh.edge_flags.clear();
     const std::size_t dropped = drop_triangles_without_area(mesh);
     PositionIndex index;
     std::vector<std::uint32_t> renumbered(mesh.vertices.size(), kNone);
@@ -153,178 +151,6 @@ std::size_t weld(Mesh& mesh) {
     mesh.vertices = index.take_positions();
     mesh.colors = std::move(colors);
     return dropped;
-}
-
-// ---- smooth normals ----------------------------------------------------------------------------
-
-namespace {
-
-using Corner = std::uint32_t;  ///< 3 * triangle + position in it
-
-/// The corners that meet in each vertex, one vertex after another.
-struct CornersByVertex {
-    std::vector<std::uint32_t> begin;  ///< a vertex: its first place in `corners`; and the end
-    std::vector<Corner> corners;
-
-    std::span<const Corner> of(std::size_t vertex) const {
-        return std::span(corners).subspan(begin[vertex], begin[vertex + 1] - begin[vertex]);
-    }
-};
-
-CornersByVertex corners_by_vertex(const Mesh& mesh) {
-    CornersByVertex by_vertex;
-    by_vertex.begin.assign(mesh.vertices.size() + 2, 0);
-    // Counted two places ahead: filling moves every start to its end, the next vertex's start.
-    for (const Mesh::Triangle& triangle : mesh.triangles) {
-        for (const std::uint32_t vertex : triangle) ++by_vertex.begin[vertex + 2];
-    }
-    std::partial_sum(by_vertex.begin.begin(), by_vertex.begin.end(), by_vertex.begin.begin());
-    by_vertex.corners.resize(mesh.triangles.size() * 3);
-    Corner corner = 0;
-    for (const Mesh::Triangle& triangle : mesh.triangles) {
-        for (const std::uint32_t vertex : triangle) {
-            by_vertex.corners[by_vertex.begin[vertex + 1]++] = corner++;
-        }
-    }
-    by_vertex.begin.pop_back();
-    return by_vertex;
-}
-
-/// A triangle's unit normal and the angles at its corners, radians.
-struct Facet {
-    Vec3f normal;
-    std::array<float, 3> angles{};
-};
-
-double angle_between(Vec3d a, Vec3d b) {
-    const double cosine = dot(a, b) / std::sqrt(dot(a, a) * dot(b, b));
-    return std::acos(std::clamp(cosine, -1.0, 1.0));
-}
-
-Facet facet_of(const Mesh& mesh, const Mesh::Triangle& triangle) {
-    const Vec3d area = area_vector(mesh, triangle);
-    if (area == Vec3d{}) return {};
-    const Vec3d a = to_double(mesh.vertices[triangle[0]]);
-    const Vec3d b = to_double(mesh.vertices[triangle[1]]);
-    const Vec3d c = to_double(mesh.vertices[triangle[2]]);
-    const double angle_a = angle_between(b - a, c - a);
-    const double angle_b = angle_between(a - b, c - b);
-    return {to_float(normalize(area)),
-            {static_cast<float>(angle_a), static_cast<float>(angle_b),
-             static_cast<float>(std::max(0.0, std::numbers::pi - angle_a - angle_b))}};
-}
-
-std::vector<Facet> facets_of(const Mesh& mesh) {
-    std::vector<Facet> facets(mesh.triangles.size());
-    parallel_ranges(facets.size(), 4096, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) facets[i] = facet_of(mesh, mesh.triangles[i]);
-    });
-    return facets;
-}
-
-/// Corners about one vertex that face almost the same way.
-struct Wing {
-    Vec3f direction;  ///< unit
-    Vec3f weighted;   ///< sum of normals times angles
-};
-
-std::uint32_t smooth_normal(const Wing& own, std::span<const Wing> wings, float cos_crease) {
-    Vec3f sum;
-    for (const Wing& other : wings) {
-        if (dot(own.direction, other.direction) > cos_crease) sum = sum + other.weighted;
-    }
-    const float size = length(sum);
-    if (size > 0.f) return pack_normal(sum / size);
-    return pack_normal(own.direction == Vec3f{} ? Vec3f{0.f, 0.f, 1.f} : own.direction);
-}
-
-/// Computes the normals of one mesh, vertex by vertex; scratch memory is kept between vertices.
-class NormalSmoother {
-  public:
-    NormalSmoother(std::span<const Facet> facets, float cos_crease,
-                   std::vector<std::array<std::uint32_t, 3>>& normals)
-        : facets_(facets), cos_crease_(cos_crease), normals_(normals) {}
-
-    void smooth(std::span<const Corner> corners) {
-        // Comparing all corners with all is fastest for the handful that a vertex has, and
-        // hopeless for the tip of a finely divided cone.
-        constexpr std::size_t kLargestExactFan = 256;
-        if (corners.size() <= kLargestExactFan) {
-            smooth_each(corners);
-        } else {
-            smooth_by_direction(corners);
-        }
-    }
-
-  private:
-    Wing wing_of(Corner corner) const {
-        const Facet& facet = facets_[corner / 3];
-        return {facet.normal, facet.normal * facet.angles[corner % 3]};
-    }
-
-    void smooth_each(std::span<const Corner> corners) {
-        wings_.clear();
-        for (const Corner corner : corners) wings_.push_back(wing_of(corner));
-        for (std::size_t i = 0; i < corners.size(); ++i) {
-            normals_[corners[i] / 3][corners[i] % 3] =
-                smooth_normal(wings_[i], wings_, cos_crease_);
-        }
-    }
-
-    /// The cell of a grid of 128 x 128 directions.
-    std::uint32_t direction_cell(Corner corner) const {
-        const Vec3f normal = facets_[corner / 3].normal;
-        return normal == Vec3f{} ? 0u : pack_normal(normal) & 0xfe00fe00u;
-    }
-
-    void smooth_by_direction(std::span<const Corner> corners) {
-        std::vector<std::pair<std::uint32_t, Corner>> by_cell;
-        for (const Corner corner : corners) by_cell.emplace_back(direction_cell(corner), corner);
-        std::ranges::sort(by_cell);
-        wings_.clear();
-        for (std::size_t i = 0; i < by_cell.size(); ++i) {
-            const Wing wing = wing_of(by_cell[i].second);
-            if (i == 0 || by_cell[i].first != by_cell[i - 1].first) wings_.push_back({});
-            wings_.back().direction = wings_.back().direction + wing.direction;
-            wings_.back().weighted = wings_.back().weighted + wing.weighted;
-        }
-        for (Wing& wing : wings_) {
-            if (wing.direction != Vec3f{}) wing.direction = normalize(wing.direction);
-        }
-        assign_by_cell(by_cell);
-    }
-
-    void assign_by_cell(std::span<const std::pair<std::uint32_t, Corner>> by_cell) {
-        std::size_t wing = 0;
-        std::uint32_t normal = smooth_normal(wings_[0], wings_, cos_crease_);
-        for (std::size_t i = 0; i < by_cell.size(); ++i) {
-            if (i > 0 && by_cell[i].first != by_cell[i - 1].first) {
-                normal = smooth_normal(wings_[++wing], wings_, cos_crease_);
-            }
-            const Corner corner = by_cell[i].second;
-            normals_[corner / 3][corner % 3] = normal;
-        }
-    }
-
-    std::span<const Facet> facets_;
-    float cos_crease_;
-    std::vector<std::array<std::uint32_t, 3>>& normals_;
-    std::vector<Wing> wings_;
-};
-
-}  // namespace
-
-void smooth_normals(Mesh& mesh, float crease_angle_deg) {
-    const float cos_crease = std::cos(crease_angle_deg * std::numbers::pi_v<float> / 180.f);
-    const std::vector<Facet> facets = facets_of(mesh);
-    const CornersByVertex by_vertex = corners_by_vertex(mesh);
-    mesh.corner_normals.resize(mesh.triangles.size());
-    parallel_ranges(mesh.vertices.size(), 4096, [&](std::size_t begin, std::size_t end) {
-        NormalSmoother smoother(facets, cos_crease, mesh.corner_normals);
-        for (std::size_t vertex = begin; vertex < end; ++vertex) {
-            smoother.smooth(by_vertex.of(vertex));
-        }
-    });
 }
 
 }  // namespace ink

@@ -18,9 +18,10 @@ struct Residue {
 /// One frame of a molecule, as flat arrays of its atoms.
 struct Molecule {
     std::string name;
-    std::vector<Vec3d> positions;         ///< angstrom
-    std::vector<std::uint8_t> elements;   ///< atomic numbers, 0: unknown
-    std::vector<std::uint32_t> residues;  ///< an atom: index into `residue_table`; empty: none known
+    std::vector<Vec3d> positions;        ///< angstrom
+    std::vector<std::uint8_t> elements;  ///< atomic numbers, 0: unknown
+    std::vector<std::uint32_t>
+        residues;  ///< an atom: index into `residue_table`; empty: none known
     std::vector<Residue> residue_table;
     std::vector<std::string> chains;
 

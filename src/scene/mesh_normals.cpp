@@ -1,0 +1,102 @@
+#include <utility>
+#include <vector>
+
+#include "base/parallel.h"
+#include "scene/mesh_topology.h"
+
+namespace ink {
+
+namespace {
+
+using PackedNormals = std::vector<std::array<std::uint32_t, 3>>;
+
+// Not codes of a normal: a half of a code is at most 65534.
+constexpr std::uint32_t kUnset = 0xFFFFFFFF;
+constexpr std::uint32_t kTaken = 0xFFFFFFFE;
+static_assert((kTaken >> 16U) == 0xFFFF);
+
+/// Computes the normals of one mesh, vertex by vertex; scratch memory is kept between vertices.
+class NormalSmoother {
+  public:
+    NormalSmoother(const Mesh& mesh, const MeshTopology& topology, std::span<const Facet> facets,
+                   PackedNormals& normals)
+        : mesh_(mesh), topology_(topology), facets_(facets), normals_(normals) {}
+
+    void smooth(std::size_t vertex) {
+        for (const Corner corner : topology_.about(vertex)) {
+            if (normal_of(corner) == kUnset) smooth_fan(corner);
+        }
+    }
+
+  private:
+    /// A corner of a fan, and whether its triangle is wound the other way than the first one.
+    struct FanCorner {
+        Corner corner;
+        bool flipped;
+    };
+
+    std::uint32_t& normal_of(Corner corner) const { return normals_[corner / 3][corner % 3]; }
+
+    /// One normal for all corners about a vertex that can be reached without crossing a crease.
+    void smooth_fan(Corner first) {
+        fan_.clear();
+        take({first, false});
+        walk({first, false}, first);
+        walk({first, false}, previous(first));
+        Vec3f sum;
+        for (const auto& [corner, flipped] : fan_) {
+            const Facet& facet = facets_[corner / 3];
+            const float angle = facet.angles[corner % 3];
+            sum = sum + facet.normal * (flipped ? -angle : angle);
+        }
+        for (const auto& [corner, flipped] : fan_) {
+            normal_of(corner) = packed(flipped ? -sum : sum, facets_[corner / 3].normal);
+        }
+    }
+
+    void take(FanCorner at) {
+        fan_.push_back(at);
+        normal_of(at.corner) = kTaken;
+    }
+
+    /// Goes about the vertex, out of the triangle across `edge` first, as far as the fan goes.
+    void walk(FanCorner at, Corner edge) {
+        const std::uint32_t vertex = topology_.vertex(at.corner);
+        while (topology_.has_twin(edge) && !mesh_.is_crease(edge / 3, edge % 3)) {
+            const Corner twin = topology_.twin(edge);
+            at.flipped ^= topology_.twin_is_flipped(edge);
+            at.corner = topology_.vertex(twin) == vertex ? twin : next(twin);
+            if (normal_of(at.corner) != kUnset) return;
+            take(at);
+            edge = at.corner == twin ? previous(twin) : at.corner;
+        }
+    }
+
+    /// `sum` may be 0 where opposite triangles meet, `own` where a triangle has no area.
+    static std::uint32_t packed(Vec3f sum, Vec3f own) {
+        if (sum != Vec3f{}) return pack_normal(normalize(sum));
+        return pack_normal(own == Vec3f{} ? Vec3f{0.0F, 0.0F, 1.0F} : own);
+    }
+
+    const Mesh& mesh_;
+    const MeshTopology& topology_;
+    std::span<const Facet> facets_;
+    PackedNormals& normals_;
+    std::vector<FanCorner> fan_;
+};
+
+}  // namespace
+
+void smooth_normals(Mesh& mesh, const CreaseSettings& settings) {
+    const MeshTopology topology(mesh);
+    const std::vector<Facet> facets = facets_of(mesh, topology);
+    mesh.edge_flags = classify_edges(mesh, topology, facets, settings);
+    PackedNormals normals(mesh.triangles.size(), {kUnset, kUnset, kUnset});
+    parallel_ranges(mesh.vertices.size(), 4096, [&](std::size_t begin, std::size_t end) {
+        NormalSmoother smoother(mesh, topology, facets, normals);
+        for (std::size_t vertex = begin; vertex < end; ++vertex) smoother.smooth(vertex);
+    });
+    (mesh.corner_normals.empty() ? mesh.corner_normals : mesh.line_normals) = std::move(normals);
+}
+
+}  // namespace ink
