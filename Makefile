@@ -3,14 +3,15 @@ PRESET ?= release
 BUILD  := build/$(PRESET)
 BIN    := $(BUILD)/bin/inktrace
 SAMPLE := samples/acetaminophen.xyz
-WERROR ?= OFF
+# WERROR=ON makes warnings errors; empty leaves it to the preset.
+WERROR ?=
 
 .PHONY: all figure test bench format packages build clean
 
 all: build
 
 build: packages
-	@cmake --preset $(PRESET) -DINKTRACE_WERROR=$(WERROR) > $(BUILD).log 2>&1 || (cat $(BUILD).log; exit 1)
+	@cmake --preset $(PRESET) $(if $(WERROR),-DINKTRACE_WERROR=$(WERROR)) > $(BUILD).log 2>&1 || (cat $(BUILD).log; exit 1)
 	cmake --build --preset $(PRESET)
 
 # The paper's Figure 1: shaded, lines alone, both.

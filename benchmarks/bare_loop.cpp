@@ -103,8 +103,7 @@ double BareLoop::run(const Pinhole& camera, std::size_t& hits) const {
         }
     }
     hits = count;
-    const std::chrono::duration<double, std::milli> time =
-        std::chrono::steady_clock::now() - start;
+    const std::chrono::duration<double, std::milli> time = std::chrono::steady_clock::now() - start;
     return time.count();
 }
 

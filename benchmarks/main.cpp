@@ -23,12 +23,14 @@ using namespace ink;
 using namespace ink::bench;
 
 double median(std::vector<double> values) {
-    std::ranges::nth_element(values, values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2));
+    std::ranges::nth_element(values,
+                             values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2));
     return values[values.size() / 2];
 }
 
 BareLoop::Pinhole pinhole(const Scene& scene, const Camera& camera, const Settings& settings) {
-    const auto half = static_cast<float>(std::tan(settings.view.fov_deg * 3.14159265358979 / 360.0));
+    const auto half =
+        static_cast<float>(std::tan(settings.view.fov_deg * 3.14159265358979 / 360.0));
     const float pixel = 2.0F * half / static_cast<float>(settings.size.height);
     const Vec3f dx = camera.right() * pixel;
     const Vec3f dy = camera.up() * -pixel;
@@ -111,7 +113,8 @@ Result measure(const NamedScene& named, Size size, int rounds, int threads, bool
 }
 
 void print(const Result& result) {
-    fmt::print("{}\n  {:<28}{:>9.2f} ms\n", result.scene, "R (bare rtcIntersect16 loop)", result.r_ms);
+    fmt::print("{}\n  {:<28}{:>9.2f} ms\n", result.scene, "R (bare rtcIntersect16 loop)",
+               result.r_ms);
     for (const Row& row : result.rows) {
         fmt::print("  {:<28}{:>9.2f} ms {:>8.2f} R\n", row.what, row.median_ms, row.in_r);
     }

@@ -537,11 +537,12 @@ TEST_F(CommandLine, SaysNothingWhenQuiet) {
 }
 
 /// About half a second, in which a terminal would get a bar, and much longer.
-const Arguments kSlow{"render", kSample, "-o",   "a.png",          "--size",    "256x256",
-                      "--tile", "4",     "--aa", "multisample:16", "--quality", "2"};
-const Arguments kEndless{"render",    kSample,  "-o", "a.png", "--size",
-                         "512x512",   "--tile", "4",  "--aa",  "multisample:4096",
-                         "--quality", "16"};
+const Arguments kSlow{"render",    kSample,  "-o",       "a.png",  "--size",
+                      "256x256",   "--tile", "4",        "--aa",   "multisample:16",
+                      "--quality", "2",      "--method", "stencil"};
+const Arguments kEndless{"render",   kSample,   "-o",        "a.png", "--size",
+                         "512x512",  "--tile",  "4",         "--aa",  "multisample:4096",
+                         "--method", "stencil", "--quality", "16"};
 
 TEST_F(CommandLine, DrawsNoProgressBarWhereThereIsNoTerminal) {
     const Outcome outcome = run(kSlow);
@@ -714,20 +715,20 @@ TEST_F(CommandLine, DrawsTheSamePictureAgainFromTheSettingsInIt) {
 
 // ---- The same bytes ----
 
-class EveryAntiAliasing : public CommandLine,
-                          public testing::WithParamInterface<std::tuple<const char*, const char*>> {
-};
+class EveryAntiAliasing
+    : public CommandLine,
+      public testing::WithParamInterface<std::tuple<const char*, const char*, const char*>> {};
 
 TEST_P(EveryAntiAliasing, GivesTheSameBytesForAnyNumberOfThreadsAndSizeOfTiles) {
-    const auto& [extension, aa] = GetParam();
+    const auto& [extension, method, aa] = GetParam();
     std::map<std::string, std::string> first;
     for (const char* threads : {"1", "2", "3"}) {
         for (const char* tile : {"4", "32", "64", "200"}) {
             SCOPED_TRACE(fmt::format("--threads {} --tile {}", threads, tile));
             // Sides that tiles and blocks do not divide.
             expect_done(run({"render", kSample, "-o", std::string("a") + extension, "--size",
-                             "67x49", "--aa", aa, "--aov", kEveryAov, "--quality", "2", "--threads",
-                             threads, "--tile", tile}));
+                             "67x49", "--method", method, "--aa", aa, "--aov", kEveryAov,
+                             "--quality", "2", "--threads", threads, "--tile", tile}));
             if (first.empty()) first = contents();
             EXPECT_TRUE(contents() == first);
         }
@@ -736,10 +737,12 @@ TEST_P(EveryAntiAliasing, GivesTheSameBytesForAnyNumberOfThreadsAndSizeOfTiles) 
 
 INSTANTIATE_TEST_SUITE_P(Written, EveryAntiAliasing,
                          testing::Combine(testing::Values(".png", ".exr"),
+                                          testing::Values("edges", "stencil"),
                                           testing::Values("none", "stencil", "multisample:5")),
-                         [](const auto& both) {
-                             std::string name = std::string(std::get<0>(both.param) + 1) + "_" +
-                                                std::get<1>(both.param);
+                         [](const auto& all) {
+                             std::string name = std::string(std::get<0>(all.param) + 1) + "_" +
+                                                std::get<1>(all.param) + "_" +
+                                                std::get<2>(all.param);
                              std::ranges::replace(name, ':', '_');
                              return name;
                          });

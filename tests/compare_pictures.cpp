@@ -1,6 +1,6 @@
 // compare_pictures EXPECTED ACTUAL DIFFERENCE: exits with 0 where two PNGs agree but for rounding:
-// the mean difference of a channel is below 0.5 of 255 and fewer than 1 in 200 pixels differ by more
-// than 16. Otherwise writes the difference, white on black, and exits with 1.
+// the mean difference of a channel is below 0.5 of 255 and fewer than 1 in 200 pixels differ by
+// more than 16. Otherwise writes the difference, white on black, and exits with 1.
 
 #include <png.h>
 

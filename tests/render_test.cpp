@@ -35,6 +35,7 @@ Settings plan_view(Size size) {
     settings.view.orthographic = static_cast<double>(size.height);
     settings.aovs = {Aov::lines};
     settings.threads = 1;
+    settings.method = Method::stencil;
     return settings;
 }
 
@@ -144,8 +145,9 @@ TEST(Lines, AreAsWideAsTheirStencil) {
 
 // Invariances
 
-Settings small_picture() {
+Settings small_picture(Method method = Method::edges) {
     Settings settings;
+    settings.method = method;
     settings.size = {90, 70};
     settings.rings = 2;
     settings.line_width = {4, Length::Unit::px};
@@ -153,9 +155,16 @@ Settings small_picture() {
     return settings;
 }
 
-TEST(Picture, IsTheSameWhenTheSceneIsScaledOrFarAway) {
+class Picture : public testing::TestWithParam<Method> {};
+
+INSTANTIATE_TEST_SUITE_P(By, Picture, testing::Values(Method::edges, Method::stencil),
+                         [](const auto& method) {
+                             return method.param == Method::edges ? "Edges" : "Stencils";
+                         });
+
+TEST_P(Picture, IsTheSameWhenTheSceneIsScaledOrFarAway) {
     const std::vector<Object> objects = random_objects(5, 60, 40);
-    const Film reference = draw(Scene(objects), small_picture());
+    const Film reference = draw(Scene(objects), small_picture(GetParam()));
     struct Placement {
         double scale;
         Vec3d shift;
@@ -163,16 +172,16 @@ TEST(Picture, IsTheSameWhenTheSceneIsScaledOrFarAway) {
     for (const auto& [scale, shift] :
          {Placement{1000.0, {}}, Placement{0.001, {}}, Placement{1e-9, {}}, Placement{1e9, {}},
           Placement{1.0, {1e6, -2e6, 3e6}}, Placement{1000.0, {-5e8, 0, 1e8}}}) {
-        const Film film = draw(Scene(placed(objects, scale, shift)), small_picture());
+        const Film film = draw(Scene(placed(objects, scale, shift)), small_picture(GetParam()));
         const Difference difference = compare(reference, film);
         EXPECT_LT(difference.mean, 0.02) << scale;
         EXPECT_LE(difference.visible, 20U) << scale;
     }
 }
 
-TEST(Picture, IsTheSameWhenSceneAndCameraAreScaled) {
+TEST_P(Picture, IsTheSameWhenSceneAndCameraAreScaled) {
     const std::vector<Object> objects = random_objects(5, 60, 40);
-    Settings settings = small_picture();
+    Settings settings = small_picture(GetParam());
     settings.view.eye = Vec3d{3, 2, 4};
     settings.view.look_at = Vec3d{0.5, 0.5, 0.5};
     const Film reference = draw(Scene(objects), settings);
@@ -186,10 +195,10 @@ TEST(Picture, IsTheSameWhenSceneAndCameraAreScaled) {
     }
 }
 
-TEST(Picture, KeepsItsDigitsWhenSeenFromVeryFar) {
+TEST_P(Picture, KeepsItsDigitsWhenSeenFromVeryFar) {
     // A field of view so small that the eye is 100,000 scene sizes away is almost orthographic.
     const std::vector<Object> objects = random_objects(5, 60, 0);
-    Settings settings = small_picture();
+    Settings settings = small_picture(GetParam());
     settings.view.orthographic = 0.0;
     const Film parallel = draw(Scene(objects), settings);
     settings.view.orthographic.reset();
@@ -198,13 +207,18 @@ TEST(Picture, KeepsItsDigitsWhenSeenFromVeryFar) {
     EXPECT_LT(difference.mean, 0.2);
 }
 
-TEST(Picture, DoesNotDependOnThreadsOrTiles) {
+TEST(AnyPicture, DoesNotDependOnThreadsOrTiles) {
     const Scene scene(random_objects(5, 60, 40));
     const auto tracer = make_embree_tracer(scene);
-    for (const AntiAliasing aa : {AntiAliasing{AntiAliasing::Kind::none, 1},
-                                  AntiAliasing{AntiAliasing::Kind::stencil, 1},
-                                  AntiAliasing{AntiAliasing::Kind::multisample, 5}}) {
+    using Kind = AntiAliasing::Kind;
+    for (const auto& [method, aa] :
+         {std::pair{Method::stencil, AntiAliasing{Kind::none, 1}},
+          std::pair{Method::stencil, AntiAliasing{Kind::stencil, 1}},
+          std::pair{Method::stencil, AntiAliasing{Kind::multisample, 5}},
+          std::pair{Method::edges, AntiAliasing{Kind::edges, 1}},
+          std::pair{Method::edges, AntiAliasing{Kind::multisample, 9}}}) {
         Settings settings = small_picture();
+        settings.method = method;
         settings.aa = aa;
         settings.aovs = {Aov::id, Aov::depth, Aov::normal, Aov::position, Aov::lines};
         settings.threads = 1;
@@ -226,7 +240,7 @@ TEST(Picture, DoesNotDependOnThreadsOrTiles) {
     }
 }
 
-TEST(Picture, DoesNotDependOnTheWindingOfTriangles) {
+TEST(AnyPicture, DoesNotDependOnTheWindingOfTriangles) {
     std::vector<Object> objects = random_objects(9, 0, 60);
     objects.erase(objects.begin());
     const Film reference = draw(Scene(objects), small_picture());
@@ -246,8 +260,8 @@ Scene grey_wall() {
 }
 
 std::uint32_t middle_pixel(const Film& film) {
-    return film.display().pixels[static_cast<std::size_t>(film.size().height / 2 * film.size().width +
-                                                          film.size().width / 2)];
+    return film.display().pixels[static_cast<std::size_t>(
+        film.size().height / 2 * film.size().width + film.size().width / 2)];
 }
 
 TEST(Shading, OfModeFlatKeepsTheColourOfTheFile) {
@@ -307,9 +321,9 @@ TEST(Compose, KeepsTheBackgroundTransparentAndLinesOpaque) {
     settings.line_width = {6, Length::Unit::px};
     settings.line_color = {255, 0, 0};
     const Film film = draw(Scene({half_plane(90.01, 500)}), settings);
-    EXPECT_EQ(film.display().pixels[16 * 32 + 31] >> 24U, 0U);      // background
-    EXPECT_EQ(film.display().pixels[16 * 32 + 16], 0xFF0000FFU);    // line
-    EXPECT_EQ(film.display().pixels[16 * 32 + 2], 0xFFCCCCCCU);     // surface
+    EXPECT_EQ(film.display().pixels[16 * 32 + 31] >> 24U, 0U);    // background
+    EXPECT_EQ(film.display().pixels[16 * 32 + 16], 0xFF0000FFU);  // line
+    EXPECT_EQ(film.display().pixels[16 * 32 + 2], 0xFFCCCCCCU);   // surface
 }
 
 TEST(AntiAliasing, SmoothsAnEdgeOfTheShading) {
@@ -373,7 +387,8 @@ TEST(AutomaticFraming, FillsThePictureUpToItsMargin) {
             int bottom = 0;
             for (int y = 0; y < size.height; ++y) {
                 for (int x = 0; x < size.width; ++x) {
-                    if (film.display().pixels[static_cast<std::size_t>(y * size.width + x)] == 0) continue;
+                    if (film.display().pixels[static_cast<std::size_t>(y * size.width + x)] == 0)
+                        continue;
                     left = std::min(left, x);
                     right = std::max(right, x);
                     top = std::min(top, y);
@@ -384,8 +399,10 @@ TEST(AutomaticFraming, FillsThePictureUpToItsMargin) {
             EXPECT_GE(top, size.height / 10 - 1);
             EXPECT_LE(right, size.width * 9 / 10 + 1);
             EXPECT_LE(bottom, size.height * 9 / 10 + 1);
-            const bool touches_sides = left <= size.width / 10 + 1 && right >= size.width * 9 / 10 - 2;
-            const bool touches_ends = top <= size.height / 10 + 1 && bottom >= size.height * 9 / 10 - 2;
+            const bool touches_sides =
+                left <= size.width / 10 + 1 && right >= size.width * 9 / 10 - 2;
+            const bool touches_ends =
+                top <= size.height / 10 + 1 && bottom >= size.height * 9 / 10 - 2;
             EXPECT_TRUE(touches_sides || touches_ends);
             EXPECT_NEAR(left + right, size.width - 1, 2);  // centred
             EXPECT_NEAR(top + bottom, size.height - 1, 2);

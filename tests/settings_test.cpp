@@ -61,16 +61,17 @@ const std::map<std::string_view, Texts> kValues{
     {"fov", {"0.001", "30", "45.5", "170"}},
     {"orthographic", {"", "auto", "12.5", "1e-30"}},
     {"margin", {"0", "0.04", "0.45"}},
-    {"method", {"stencil"}},
-    {"lines", {"none", "silhouette", "intersection", "silhouette,intersection"}},
+    {"method", {"edges", "stencil"}},
+    {"lines", {"all", "none", "crease", "silhouette,intersection,self-occlusion"}},
+    {"lattice", {"1", "2", "4"}},
     {"line-width", {"2px", "0.5pt", "0.3mm", "0.2%"}},
     {"line-color", {"#000000", "#0a0b0c"}},
     {"ids", {"", "primitive", "part", "object"}},
-    {"metric", {"linear", "power:10", "power:2.5", "solid"}},
+    {"metric", {"", "linear", "power:10", "power:2.5", "solid"}},
     {"quality", {"1", "3", "64"}},
     {"line-blend", {"auto", "display", "linear"}},
     {"shade", {"lambert", "toon", "flat", "none"}},
-    {"aa", {"none", "stencil", "multisample:1", "multisample:4096"}},
+    {"aa", {"", "none", "edges", "stencil", "multisample:1", "multisample:4096"}},
     {"threads", {"0", "1", "1024"}},
     {"tile", {"4", "64", "4096"}},
 };
@@ -93,14 +94,15 @@ const std::map<std::string_view, Texts> kNonsense{
     {"margin", {"", "-0.1", "0.5", "nan"}},
     {"method", {"", "magic"}},
     {"lines", {"", "crooked", "silhouette;intersection"}},
+    {"lattice", {"", "0", "5", "1.5"}},
     {"line-width", {"", "0", "-1", "0px", "px", "nan", "inf", "2 cm", "2ptpx", "1e400"}},
     {"line-color", {"", "#12345", "transparent", "1,2"}},
     {"ids", {"atom", "parts"}},
-    {"metric", {"", "cubic", "power:", "power:0.5", "power:nan", "power:1001"}},
+    {"metric", {"cubic", "power:", "power:0.5", "power:nan", "power:1001"}},
     {"quality", {"", "0", "65", "1.5", "high"}},
     {"line-blend", {"", "srgb"}},
     {"shade", {"", "phong"}},
-    {"aa", {"", "multisample", "multisample:", "multisample:0", "multisample:4097", "fxaa"}},
+    {"aa", {"multisample", "multisample:", "multisample:0", "multisample:4097", "fxaa"}},
     {"threads", {"", "-1", "1025", "all"}},
     {"tile", {"", "0", "2", "6", "66", "4100"}},
 };
@@ -137,7 +139,7 @@ TEST(Settings, LeaveEachOtherAlone) {
 }
 
 TEST(Settings, CanBeMadeAutomaticAgain) {
-    for (const char* name : {"eye", "look-at", "up", "orthographic", "ids"}) {
+    for (const char* name : {"eye", "look-at", "up", "orthographic", "ids", "metric", "aa"}) {
         Settings settings = with(name, kValues.at(name).back());
         EXPECT_NE(get(settings, name), "");
         find_setting(name).set(settings, "");
@@ -203,7 +205,7 @@ TEST(Settings, ReadColoursInEveryForm) {
 
 TEST(ListSettings, KnowAllAndNone) {
     EXPECT_EQ(get(with("aov", "all"), "aov"), "id,depth,normal,position,lines");
-    EXPECT_EQ(get(with("lines", "all"), "lines"), "silhouette,intersection");
+    EXPECT_EQ(get(with("lines", "all"), "lines"), "all");
     EXPECT_EQ(get(with("lines", "none"), "lines"), "none");
 }
 

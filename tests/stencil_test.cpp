@@ -27,7 +27,8 @@ double mean_error(const Metric& metric, int rings) {
     double sum = 0.0;
     int count = 0;
     for (int degree = 0; degree <= 90; degree += 3) {
-        // A hair off the axes: there, ring points lie exactly on the edge and could count either way.
+        // A hair off the axes: there, ring points lie exactly on the edge and could count either
+        // way.
         const double angle = (degree + 0.01) * std::numbers::pi / 180.0;
         for (double u = 0.005; u < 1.0; u += 0.01, ++count) {
             sum += std::abs(counted_strength(metric, rings, u, angle) -

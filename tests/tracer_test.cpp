@@ -51,8 +51,8 @@ Agreement compare(const std::vector<HitPacket>& a, const std::vector<HitPacket>&
     for (std::size_t k = 0; k < a.size(); ++k) {
         for (int i = 0; i < kLanes; ++i) {
             ++result.rays;
-            if (a[k].object[i] != b[k].object[i] || (a[k].object[i] != kNoObject &&
-                                                     a[k].primitive[i] != b[k].primitive[i])) {
+            if (a[k].object[i] != b[k].object[i] ||
+                (a[k].object[i] != kNoObject && a[k].primitive[i] != b[k].primitive[i])) {
                 ++result.different;
                 continue;
             }
@@ -124,11 +124,11 @@ TEST(TracerPaths, AgreeAmongThemselvesOnCoherentRays) {
                     normalize(Vec3f{0.2F * x, 0.2F * y, -1.0F}));
         }
     }
-    const auto sixteen = trace(*make_embree_tracer(scene, PacketWidth::sixteen), rays,
-                               Coherence::coherent);
+    const auto sixteen =
+        trace(*make_embree_tracer(scene, PacketWidth::sixteen), rays, Coherence::coherent);
     for (const PacketWidth width : {PacketWidth::eight, PacketWidth::one}) {
-        const Agreement result = compare(
-            sixteen, trace(*make_embree_tracer(scene, width), rays, Coherence::coherent));
+        const Agreement result =
+            compare(sixteen, trace(*make_embree_tracer(scene, width), rays, Coherence::coherent));
         EXPECT_GT(result.hits, result.rays / 4);
         EXPECT_LE(result.different, 4) << "of " << result.rays;
         EXPECT_LT(result.t_error, 2e-5F);

@@ -28,7 +28,7 @@ extern "C" void end_cleanly(int signal) {
 }
 
 std::string formats() {
-    std::string text = "Reads (all also as .gz where the format is text):";
+    std::string text = "Reads (all of them also compressed, as .gz):";
     for (const auto& [name, extensions] : inktrace::input_formats()) {
         text += fmt::format("\n  {:<8}{}", name, extensions);
     }

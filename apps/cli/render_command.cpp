@@ -61,7 +61,7 @@ nlohmann::ordered_json to_json(const RenderArguments& arguments, const Picture& 
     json["lines_ms"] = list(&RenderStats::lines_ms);
     json["shade_ms"] = list(&RenderStats::shade_ms);
     json["rays"] = picture.stats().rays;
-    json["crossings"] = 0;  // method stencil does not locate any
+    json["crossings"] = picture.stats().crossings;
     json["peak_rss_bytes"] = peak_rss_bytes();
     return json;
 }

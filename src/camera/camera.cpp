@@ -201,6 +201,10 @@ void Camera::lay_plane(const Scene& scene, Size size) {
     }
 }
 
+float Camera::least_footprint() const {
+    return length(orthographic_ ? origin_dx_ : dir_dx_ * static_cast<float>(start_depth_));
+}
+
 float Camera::distance_from_eye(Vec2f point, float t) const {
     const Vec3f d = dir_ + dir_dx_ * point.x + dir_dy_ * point.y;
     return t + static_cast<float>(start_depth_) * length(d);

@@ -48,6 +48,12 @@ class Camera {
     Vec3f up() const { return to_float(up_); }        ///< unit, scene frame
     Vec3f back() const { return to_float(back_); }    ///< unit, towards the viewer
 
+    /// Distance between the rays of neighbouring pixels where it is least: in orthographic
+    /// projection anywhere, else where the scene begins. Scene units.
+    float least_footprint() const;
+    bool orthographic() const { return orthographic_; }
+    Vec3f eye() const { return to_float(eye_); }  ///< scene frame
+
     /// The part of the screen, in pixels, outside of which no ray can hit the scene.
     struct ScreenBox {
         float left, top, right, bottom;

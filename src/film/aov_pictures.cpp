@@ -108,7 +108,8 @@ class PictureMaker {
         }
         if (const auto planes = find_vector("N"); planes[0] != nullptr) {
             const Range unit{-1.0F, 1.0F};
-            pictures.push_back({"normal", vector_picture(channels_.size, planes, {unit, unit, unit})});
+            pictures.push_back(
+                {"normal", vector_picture(channels_.size, planes, {unit, unit, unit})});
         }
         if (const auto planes = find_vector("P"); planes[0] != nullptr) {
             pictures.push_back(

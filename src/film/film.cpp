@@ -19,10 +19,9 @@ INKTRACE_INLINE float encode(float linear) {
     const float y = std::sqrt(std::sqrt(x));
     const float curve =
         -0.0596417498F +
-        y * (0.140776781F +
-             y * (1.36022559F +
-                  y * (-0.838965334F +
-                       y * (0.638769462F + y * (-0.306036986F + y * 0.0648733212F)))));
+        y * (0.140776781F + y * (1.36022559F + y * (-0.838965334F +
+                                                    y * (0.638769462F + y * (-0.306036986F +
+                                                                             y * 0.0648733212F)))));
     return x <= 0.0031308F ? 12.92F * x : curve;
 }
 
@@ -64,6 +63,24 @@ void decode(ColorPacket& c) {
     unpremultiply(c);
     for (Lanes<float>* channel : {&c.r, &c.g, &c.b}) {
         for (float& value : *channel) value = srgb_decode(value);
+    }
+    premultiply(c);
+}
+
+/// The same for colours that come from bytes, by table.
+void decode_bytes(ColorPacket& c) {
+    static const auto kTable = [] {
+        std::array<float, 256> table{};
+        for (std::size_t v = 0; v < table.size(); ++v) {
+            table[v] = srgb_decode(static_cast<float>(v) / 255.0F);
+        }
+        return table;
+    }();
+    unpremultiply(c);
+    for (Lanes<float>* channel : {&c.r, &c.g, &c.b}) {
+        for (float& value : *channel) {
+            value = kTable[static_cast<std::size_t>(std::clamp(value, 0.0F, 1.0F) * 255.0F + 0.5F)];
+        }
     }
     premultiply(c);
 }
@@ -152,8 +169,8 @@ Film::Film(Size size, const FilmSettings& settings) : size_(size), settings_(set
         for (const char* name : {"R", "G", "B", "A"}) add_plane<float>(name);
     }
 
-    ColorPacket background = constant(srgb_decode(settings.background),
-                                      settings.transparent_background ? 0.0F : 1.0F);
+    ColorPacket background =
+        constant(srgb_decode(settings.background), settings.transparent_background ? 0.0F : 1.0F);
     background = paper(background);
     if (settings.blend == BlendSpace::display) encode(background);
     finish(background, background_);
@@ -216,6 +233,113 @@ void Film::store(int x, int y, const Block& block) {
     if (settings_.display) copy_block(size_, x, y, block.display, display_.pixels.data());
 }
 
+void Film::touch_up(int x, int y, int count, const TouchUp& change) {
+    count = std::min(count, size_.width - x);
+    // Pixels that stay as they are must not go through the blend space and back, which rounds.
+    Lanes<std::uint8_t> changed{};
+    bool inked = false;
+    bool shifted = false;
+    for (int i = 0; i < count; ++i) {
+        const bool ink = change.ink_alpha != nullptr && change.ink_alpha[i] != 0.0F;
+        bool shift = false;
+        for (const float* plane : change.shift) shift |= plane != nullptr && plane[i] != 0.0F;
+        changed[i] = ink || shift ? 1 : 0;
+        inked |= ink;
+        shifted |= shift;
+    }
+    if (!inked && !shifted) return;
+
+    const std::size_t first = static_cast<std::size_t>(y) * static_cast<std::size_t>(size_.width) +
+                              static_cast<std::size_t>(x);
+    ColorPacket colors = load(first, count);
+    if (shifted && settings_.compose != Compose::lines) shift_colors(change, count, colors);
+    if (inked) {
+        for (int i = 0; i < count; ++i) {
+            const float alpha = change.ink_alpha[i];
+            const auto ink = [&](std::size_t channel, float uniform) {
+                return change.ink_color ? alpha * uniform : change.ink_colors[channel][i];
+            };
+            const Color uniform = change.ink_color.value_or(Color{});
+            colors.r[i] = colors.r[i] * (1.0F - alpha) + ink(0, uniform.r);
+            colors.g[i] = colors.g[i] * (1.0F - alpha) + ink(1, uniform.g);
+            colors.b[i] = colors.b[i] * (1.0F - alpha) + ink(2, uniform.b);
+            colors.a[i] = colors.a[i] * (1.0F - alpha) + alpha;
+        }
+    }
+
+    Block block;
+    finish(colors, block);
+    const auto copy = [&](const auto& lanes, auto* plane) {
+        for (int i = 0; i < count; ++i) {
+            if (changed[i] != 0) plane[first + static_cast<std::size_t>(i)] = lanes[i];
+        }
+    };
+    if (settings_.display) copy(block.display, display_.pixels.data());
+    if (settings_.linear) {
+        std::size_t plane = 0;
+        for (const auto* lanes :
+             {&block.linear.r, &block.linear.g, &block.linear.b, &block.linear.a}) {
+            copy(*lanes, std::get<std::vector<float>>(channels_.channels[plane++].values).data());
+        }
+    }
+}
+
+/// Finished pixels, back in the blend space and premultiplied.
+ColorPacket Film::load(std::size_t first, int count) const {
+    ColorPacket colors{};
+    if (settings_.linear) {
+        std::size_t plane = 0;
+        for (auto* lanes : {&colors.r, &colors.g, &colors.b, &colors.a}) {
+            const auto& values = std::get<std::vector<float>>(channels_.channels[plane++].values);
+            std::copy_n(values.begin() + static_cast<std::ptrdiff_t>(first), count, lanes->begin());
+        }
+        if (settings_.blend == BlendSpace::display) encode(colors);
+        return colors;
+    }
+    for (int i = 0; i < count; ++i) {
+        const std::uint32_t pixel = display_.pixels[first + static_cast<std::size_t>(i)];
+        const auto channel = [&](unsigned shift) {
+            return static_cast<float>((pixel >> shift) & 0xFFU) * (1.0F / 255.0F);
+        };
+        colors.a[i] = channel(24);
+        colors.r[i] = channel(0) * colors.a[i];
+        colors.g[i] = channel(8) * colors.a[i];
+        colors.b[i] = channel(16) * colors.a[i];
+    }
+    if (settings_.blend == BlendSpace::linear) decode(colors);
+    return colors;
+}
+
+void Film::shift_colors(const TouchUp& change, int count, ColorPacket& colors) const {
+    ColorPacket linear = colors;
+    if (settings_.blend == BlendSpace::display) (settings_.linear ? decode : decode_bytes)(linear);
+    std::size_t plane = 0;
+    for (auto* lanes : {&linear.r, &linear.g, &linear.b, &linear.a}) {
+        const float* shift = change.shift[plane++];
+        for (int i = 0; i < count; ++i) {
+            (*lanes)[i] = std::clamp((*lanes)[i] + shift[i], 0.0F, plane == 4 ? 1.0F : kInfinity);
+        }
+    }
+    if (settings_.blend == BlendSpace::display) encode(linear);
+    for (int i = 0; i < count; ++i) {
+        bool shifted = false;
+        for (const float* shift : change.shift) shifted |= shift[i] != 0.0F;
+        if (!shifted) continue;
+        colors.r[i] = linear.r[i];
+        colors.g[i] = linear.g[i];
+        colors.b[i] = linear.b[i];
+        colors.a[i] = linear.a[i];
+    }
+}
+
+void Film::put_row(std::size_t plane, int x, int y, int count, const float* values) {
+    auto& target = std::get<std::vector<float>>(channels_.channels[plane].values);
+    const std::size_t first = static_cast<std::size_t>(y) * static_cast<std::size_t>(size_.width) +
+                              static_cast<std::size_t>(x);
+    std::copy_n(values, std::min(count, size_.width - x),
+                target.begin() + static_cast<std::ptrdiff_t>(first));
+}
+
 template <class T>
 std::size_t Film::add_plane(std::string name) {
     channels_.channels.push_back({std::move(name), std::vector<T>(size_.pixels())});
@@ -224,7 +348,8 @@ std::size_t Film::add_plane(std::string name) {
 
 template <class T>
 void Film::put_plane(std::size_t plane, int x, int y, const Lanes<T>& values) {
-    copy_block(size_, x, y, values, std::get<std::vector<T>>(channels_.channels[plane].values).data());
+    copy_block(size_, x, y, values,
+               std::get<std::vector<T>>(channels_.channels[plane].values).data());
 }
 
 template std::size_t Film::add_plane<float>(std::string);

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -54,13 +56,27 @@ class Film {
 
     /// Adds one sample a pixel: its colour and its line strength in [0, 1].
     void add(const ColorPacket& shaded, const Lanes<float>& strength, PixelSums& sums) const;
-    /// Finishes the block whose upper left pixel is (x, y): per sample, c = mix(c_s, line colour, e)
-    /// (Choudhury and Parker 2009, section 3.2); per pixel, the mean of its samples.
+    /// Finishes the block whose upper left pixel is (x, y): per sample, c = mix(c_s, line colour,
+    /// e) (Choudhury and Parker 2009, section 3.2); per pixel, the mean of its samples.
     void put(int x, int y, const PixelSums& sums);
     /// The same for a single sample a pixel without lines.
     void put(int x, int y, const ColorPacket& shaded);
     /// The same where there is nothing but background.
     void put_background(int x, int y) { store(x, y, background_); }
+
+    /// Changes up to kLanes finished pixels from (x, y) on to the right: adds `shift` to their
+    /// colour (linear, premultiplied), then lays ink over them. Pixels beyond the film's edge are
+    /// left out.
+    struct TouchUp {
+        const float* ink_alpha;                  ///< null: no ink
+        std::optional<Color> ink_color;          ///< one for all pixels, blend space; or else
+        std::array<const float*, 3> ink_colors;  ///< one each, times ink_alpha
+        std::array<const float*, 4> shift;       ///< null: none
+    };
+    void touch_up(int x, int y, int count, const TouchUp& change);
+
+    /// The lines' colour in the blend space.
+    Color line_color() const { return line_; }
 
     /// Adds a plane for data beside the colour; returns its index.
     template <class T>
@@ -69,18 +85,23 @@ class Film {
     template <class T>
     void put_plane(std::size_t plane, int x, int y, const Lanes<T>& values);
 
+    /// Writes `count` values of a row of a float plane, as far as they lie on the film.
+    void put_row(std::size_t plane, int x, int y, int count, const float* values);
+
     const DisplayImage& display() const { return display_; }    ///< empty unless asked for
     const ChannelImage& channels() const { return channels_; }  ///< R G B A if linear, then planes
 
   private:
     /// A finished block.
     struct Block {
-        ColorPacket linear;           ///< if linear pixels are wanted
+        ColorPacket linear;            ///< if linear pixels are wanted
         Lanes<std::uint32_t> display;  ///< if display pixels are
     };
 
     ColorPacket paper(const ColorPacket& shaded) const;
     void finish(ColorPacket& blended, Block& block) const;
+    ColorPacket load(std::size_t first, int count) const;
+    void shift_colors(const TouchUp& change, int count, ColorPacket& colors) const;
     void store(int x, int y, const Block& block);
 
     Size size_;

@@ -33,13 +33,19 @@ AovWriter::AovWriter(const Scene& scene, const Camera& camera, const std::vector
     }
 }
 
-void AovWriter::put(Block block, Vec2f offset, const HitPacket& hits,
-                    const Lanes<float>& strength) const {
+void AovWriter::put(Block block, Vec2f offset, const HitPacket& hits) const {
     put_ids(block, hits);
     if (depth_) put_depths(block, offset, hits);
     if (normal_) put_normals(block, hits);
     if (position_) put_positions(block, offset, hits);
+}
+
+void AovWriter::put_strength(Block block, const Lanes<float>& strength) const {
     if (lines_) film_.put_plane(*lines_, block.x, block.y, strength);
+}
+
+void AovWriter::put_strength(int x, int y, int count, const float* strength) const {
+    if (lines_) film_.put_row(*lines_, x, y, count, strength);
 }
 
 void AovWriter::put_ids(Block block, const HitPacket& hits) const {

@@ -22,7 +22,10 @@ class AovWriter {
     /// P.Y, P.Z (world); line.A (line strength).
     AovWriter(const Scene& scene, const Camera& camera, const std::vector<Aov>& aovs, Film& film);
 
-    void put(Block block, Vec2f offset, const HitPacket& hits, const Lanes<float>& strength) const;
+    void put(Block block, Vec2f offset, const HitPacket& hits) const;
+    void put_strength(Block block, const Lanes<float>& strength) const;
+    /// Up to kLanes pixels from (x, y) on to the right.
+    void put_strength(int x, int y, int count, const float* strength) const;
 
   private:
     void put_ids(Block block, const HitPacket& hits) const;

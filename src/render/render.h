@@ -28,7 +28,13 @@ struct RenderStats {
     double lines_ms = 0.0;   ///< stencil rays and edge strengths
     double shade_ms = 0.0;   ///< shading, compositing, pixels
     std::uint64_t rays = 0;
+    std::uint64_t crossings = 0;  ///< located by method "edges"
     int threads = 0;
+
+    /// Adds another thread's times and counts.
+    RenderStats& operator+=(const RenderStats& other);
+    /// Times of phases divided by the number of threads that share them.
+    RenderStats mean_over(int threads) const;
 };
 
 /// Which pixels to make: for a screen or an 8-bit file, and for an EXR.
@@ -37,8 +43,8 @@ struct PixelFormats {
     bool linear = false;
 };
 
-/// Renders the scene, of which `tracer` must have been made. The same arguments give the same bytes,
-/// whatever the number of threads and the size of tiles.
+/// Renders the scene, of which `tracer` must have been made. The same arguments give the same
+/// bytes, whatever the number of threads and the size of tiles.
 Film render(const Scene& scene, const Tracer& tracer, const Settings& settings,
             const PixelFormats& formats = {}, const RenderControl& control = {},
             RenderStats* stats = nullptr);

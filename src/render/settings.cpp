@@ -16,14 +16,10 @@ namespace ink {
 
 double Length::pixels(double dpi, int picture_height) const {
     switch (unit) {
-        case Unit::px:
-            return value;
-        case Unit::pt:
-            return value * dpi / 72.0;
-        case Unit::mm:
-            return value * dpi / 25.4;
-        case Unit::percent:
-            return value * picture_height / 100.0;
+        case Unit::px: return value;
+        case Unit::pt: return value * dpi / 72.0;
+        case Unit::mm: return value * dpi / 25.4;
+        case Unit::percent: return value * picture_height / 100.0;
     }
     return value;
 }
@@ -190,9 +186,11 @@ const Words<View> kViews{{{"auto", View::automatic},
                           {"top", View::top},
                           {"bottom", View::bottom},
                           {"iso", View::iso}}};
-const Words<Method> kMethods{{{"stencil", Method::stencil}}};
-const Words<LineType> kLineTypes{
-    {{"silhouette", LineType::silhouette}, {"intersection", LineType::intersection}}};
+const Words<Method> kMethods{{{"edges", Method::edges}, {"stencil", Method::stencil}}};
+const Words<LineType> kLineTypes{{{"silhouette", LineType::silhouette},
+                                  {"intersection", LineType::intersection},
+                                  {"self-occlusion", LineType::self_occlusion},
+                                  {"crease", LineType::crease}}};
 const Words<IdLevel> kIdLevels{
     {{"primitive", IdLevel::primitive}, {"part", IdLevel::part}, {"object", IdLevel::object}}};
 const Words<Compose> kComposes{
@@ -222,35 +220,40 @@ Metric read_metric(std::string_view text) {
 
 std::string print(const Metric& metric) {
     switch (metric.kind) {
-        case Metric::Kind::linear:
-            return "linear";
-        case Metric::Kind::power:
-            return fmt::format("power:{}", metric.exponent);
-        case Metric::Kind::solid:
-            return "solid";
+        case Metric::Kind::linear: return "linear";
+        case Metric::Kind::power: return fmt::format("power:{}", metric.exponent);
+        case Metric::Kind::solid: return "solid";
     }
     return {};
 }
 
 AntiAliasing read_aa(std::string_view text) {
     if (text == "none") return {AntiAliasing::Kind::none, 1};
+    if (text == "edges") return {AntiAliasing::Kind::edges, 1};
     if (text == "stencil") return {AntiAliasing::Kind::stencil, 1};
     if (text.starts_with("multisample:")) {
         return {AntiAliasing::Kind::multisample, read_int(text.substr(12), 1, 4096)};
     }
-    throw UsageError(fmt::format("'{}' is not one of none, stencil, multisample:S", text));
+    throw UsageError(fmt::format("'{}' is not one of none, edges, stencil, multisample:S", text));
 }
 
 std::string print(const AntiAliasing& aa) {
     switch (aa.kind) {
-        case AntiAliasing::Kind::none:
-            return "none";
-        case AntiAliasing::Kind::stencil:
-            return "stencil";
-        case AntiAliasing::Kind::multisample:
-            return fmt::format("multisample:{}", aa.samples);
+        case AntiAliasing::Kind::none: return "none";
+        case AntiAliasing::Kind::edges: return "edges";
+        case AntiAliasing::Kind::stencil: return "stencil";
+        case AntiAliasing::Kind::multisample: return fmt::format("multisample:{}", aa.samples);
     }
     return {};
+}
+
+std::string print(LineTypes types) {
+    if (types == LineTypes::all()) return "all";
+    std::vector<LineType> list;
+    for (const auto& [word, type] : kLineTypes.entries) {
+        if (types.has(type)) list.push_back(type);
+    }
+    return kLineTypes.print_list(list);
 }
 
 void read_background(Settings& settings, std::string_view text) {
@@ -325,15 +328,24 @@ std::vector<Setting> make_table() {
          [](S& s, Text t) { s.view.margin = read_number(t, 0, 0.45); },
          [](const S& s) { return fmt::format("{}", s.view.margin); }},
 
-        {"method", "Lines", "NAME", "How lines are found: stencil (the paper's ray stencils)",
+        {"method", "Lines", "NAME",
+         "How lines are found: edges (located, of exact width) or stencil (the paper's ray "
+         "stencils)",
          [](S& s, Text t) { s.method = kMethods.read(t); },
          [](const S& s) { return kMethods.print(s.method); }},
         {"lines", "Lines", "LIST",
-         "silhouette, intersection, all or none; method stencil cannot tell the two apart and "
-         "draws "
-         "both for either",
-         [](S& s, Text t) { s.lines = kLineTypes.read_list(t); },
-         [](const S& s) { return kLineTypes.print_list(s.lines); }},
+         "silhouette, intersection, self-occlusion, crease, all or none; method stencil draws the "
+         "first two, both for either",
+         [](S& s, Text t) {
+             LineTypes types;
+             for (const LineType type : kLineTypes.read_list(t)) types.add(type);
+             s.lines = types;
+         },
+         [](const S& s) { return print(s.lines); }},
+        {"lattice", "Lines", "Q",
+         "Method edges: rays along a pixel's side; 2 to 4 find thinner things and shade smoother",
+         [](S& s, Text t) { s.lattice = read_int(t, 1, kMostLatticePoints); },
+         [](const S& s) { return fmt::format("{}", s.lattice); }},
         {"line-width", "Lines", "LEN", "Width in px, pt, mm or % of the picture's height",
          [](S& s, Text t) { s.line_width = read_length(t); },
          [](const S& s) {
@@ -352,12 +364,11 @@ std::vector<Setting> make_table() {
          },
          [](const S& s) { return s.ids ? kIdLevels.print(*s.ids) : std::string(); }},
         {"metric", "Lines", "NAME",
-         "Profile across a line: linear (soft, the paper's equation 2), power:P (bolder, equation "
-         "3 "
-         "has P = 10) or solid",
-         [](S& s, Text t) { s.metric = read_metric(t); },
-         [](const S& s) { return print(s.metric); }},
-        {"quality", "Lines", "N", "Rings of a stencil: 4 N (N + 1) rays a sample",
+         "Profile across a line: solid (method edges' own), linear (method stencil's own, the "
+         "paper's equation 2) or power:P (equation 3 has P = 10)",
+         [](S& s, Text t) { s.metric = t.empty() ? std::nullopt : std::optional(read_metric(t)); },
+         [](const S& s) { return s.metric ? print(*s.metric) : std::string(); }},
+        {"quality", "Lines", "N", "Method stencil: rings of a stencil, 4 N (N + 1) rays a sample",
          [](S& s, Text t) { s.rings = read_int(t, 1, 64); },
          [](const S& s) { return fmt::format("{}", s.rings); }},
         {"line-blend", "Lines", "SPACE",
@@ -372,9 +383,12 @@ std::vector<Setting> make_table() {
          [](S& s, Text t) { s.shading.mode = kShadeModes.read(t); },
          [](const S& s) { return kShadeModes.print(s.shading.mode); }},
         {"aa", "Shading", "MODE",
-         "Smoothing of what is not a line: none, stencil (shade the stencil's rays too) or "
-         "multisample:S",
-         [](S& s, Text t) { s.aa = read_aa(t); }, [](const S& s) { return print(s.aa); }},
+         "Smoothing of what is not a line: none, edges (method edges: mix the two sides' colours "
+         "in "
+         "pixels that an edge cuts), stencil (method stencil: shade the stencil's rays too) or "
+         "multisample:S (method edges: a lattice of at least S rays, 16 at most)",
+         [](S& s, Text t) { s.aa = t.empty() ? std::nullopt : std::optional(read_aa(t)); },
+         [](const S& s) { return s.aa ? print(*s.aa) : std::string(); }},
 
         {"threads", "Run", "T", "Threads to use; 0 for all. The picture does not depend on it",
          [](S& s, Text t) { s.threads = read_int(t, 0, 1024); },
@@ -424,11 +438,9 @@ int plane_count(Aov aov) {
     switch (aov) {
         case Aov::id:
         case Aov::normal:
-        case Aov::position:
-            return 3;
+        case Aov::position: return 3;
         case Aov::depth:
-        case Aov::lines:
-            return 1;
+        case Aov::lines: return 1;
     }
     return 0;
 }
@@ -456,6 +468,27 @@ void check_memory(const Settings& settings, int color_bytes) {
 }
 
 }  // namespace
+
+Metric Settings::profile() const {
+    const Metric own{method == Method::edges ? Metric::Kind::solid : Metric::Kind::linear};
+    return metric.value_or(own);
+}
+
+AntiAliasing Settings::smoothing() const {
+    using Kind = AntiAliasing::Kind;
+    if (method == Method::edges) {
+        const AntiAliasing own{lines.empty() ? Kind::none : Kind::edges, 1};
+        return aa && aa->kind == Kind::none ? *aa : aa ? AntiAliasing{Kind::edges, 1} : own;
+    }
+    const AntiAliasing asked = aa.value_or(AntiAliasing{});
+    return asked.kind == Kind::edges ? AntiAliasing{} : asked;
+}
+
+int Settings::lattice_points() const {
+    if (!aa || aa->kind != AntiAliasing::Kind::multisample) return lattice;
+    const auto side = static_cast<int>(std::ceil(std::sqrt(aa->samples)));
+    return std::clamp(side, lattice, kMostLatticePoints);
+}
 
 void validate(const Settings& settings, int color_bytes) {
     check_memory(settings, color_bytes);

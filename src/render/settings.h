@@ -12,6 +12,7 @@
 #include "base/image.h"
 #include "camera/camera.h"
 #include "film/film.h"
+#include "lines/line_type.h"
 #include "lines/strength.h"
 #include "scene/ids.h"
 #include "shading/shading.h"
@@ -27,13 +28,12 @@ struct Length {
     double pixels(double dpi, int picture_height) const;
 };
 
-enum class Method : std::uint8_t { stencil };
-
-enum class LineType : std::uint8_t { silhouette, intersection };
+enum class Method : std::uint8_t { edges, stencil };
 
 struct AntiAliasing {
     enum class Kind : std::uint8_t {
         none,        ///< one sample at the pixel's centre
+        edges,       ///< method "edges": pixels that a located edge cuts mix its two sides' colours
         stencil,     ///< the stencil's rays are shaded too (paper, section 4.2)
         multisample  ///< S samples, each with a stencil of its own
     };
@@ -42,6 +42,8 @@ struct AntiAliasing {
 };
 
 enum class Aov : std::uint8_t { id, depth, normal, position, lines };
+
+inline constexpr int kMostLatticePoints = 4;  ///< along a pixel's side
 
 enum class LineBlend : std::uint8_t { automatic, display, linear };
 
@@ -53,19 +55,20 @@ struct Settings {
 
     ViewSettings view;
 
-    Method method = Method::stencil;
-    std::vector<LineType> lines{LineType::silhouette, LineType::intersection};
+    Method method = Method::edges;
+    LineTypes lines = LineTypes::all();
+    int lattice = 1;  ///< points along a pixel's side, for method "edges"
     Length line_width{3.0, Length::Unit::px};
     Rgb8 line_color{0, 0, 0};
     LineBlend line_blend = LineBlend::automatic;
     std::optional<IdLevel> ids;
-    Metric metric;
+    std::optional<Metric> metric;  ///< default: solid for method "edges", linear for "stencil"
     int rings = 1;
 
     Compose compose = Compose::both;
     ShadingSettings shading;
 
-    AntiAliasing aa;
+    std::optional<AntiAliasing> aa;  ///< default: the method's own, see smoothing()
     std::vector<Aov> aovs;
 
     int threads = 0;
@@ -73,6 +76,14 @@ struct Settings {
 
     double line_width_px() const { return line_width.pixels(dpi, size.height); }
     bool draws_lines() const { return compose != Compose::shaded && !lines.empty(); }
+    /// The metric that is set, or else the method's own.
+    Metric profile() const;
+    /// What the method makes of `aa`. Method "edges" knows none and edges, and samples more densely
+    /// for multisample (lattice_points); without `lines` there is nothing to find and its own is
+    /// none. Method "stencil" knows all but edges.
+    AntiAliasing smoothing() const;
+    /// Lattice points along a pixel's side.
+    int lattice_points() const;
 };
 
 /// One row of the table: the single source for flags, help and reference pages.

@@ -8,14 +8,15 @@ std::vector<Tile> cut_into_tiles(Size size, int side) {
     std::vector<Tile> tiles;
     for (int y = 0; y < size.height; y += side) {
         for (int x = 0; x < size.width; x += side) {
-            tiles.push_back({x, y, std::min(x + side, size.width), std::min(y + side, size.height)});
+            tiles.push_back(
+                {x, y, std::min(x + side, size.width), std::min(y + side, size.height)});
         }
     }
     return tiles;
 }
 
-void sort_blocks(const Tile& tile, const Camera& camera, float reach, std::vector<Block>& near_scene,
-                 std::vector<Block>& empty) {
+void sort_blocks(const Tile& tile, const Camera& camera, float reach,
+                 std::vector<Block>& near_scene, std::vector<Block>& empty) {
     near_scene.clear();
     empty.clear();
     const Camera::ScreenBox& box = camera.scene_box();

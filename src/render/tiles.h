@@ -18,7 +18,7 @@ std::vector<Tile> cut_into_tiles(Size size, int side);
 
 /// The blocks of a tile, split by whether any ray through a point within `reach` pixels of the
 /// block can hit the scene.
-void sort_blocks(const Tile& tile, const Camera& camera, float reach, std::vector<Block>& near_scene,
-                 std::vector<Block>& empty);
+void sort_blocks(const Tile& tile, const Camera& camera, float reach,
+                 std::vector<Block>& near_scene, std::vector<Block>& empty);
 
 }  // namespace ink

@@ -40,8 +40,8 @@ void resolve_one_object(const HitPacket& hits, GeometryId first, std::uint32_t s
 LineIds::LineIds(const Scene& scene, std::optional<IdLevel> level) {
     GeometryId next = kBackground + 1;
     for (const Object& object : scene.objects()) {
-        const IdLevel own = level.value_or(object.kind == ObjectKind::mesh ? IdLevel::object
-                                                                           : IdLevel::primitive);
+        const IdLevel own =
+            level.value_or(object.kind == ObjectKind::mesh ? IdLevel::object : IdLevel::primitive);
         if (const Groups* own_groups = groups(object, own)) {
             objects_.push_back({next, 0, own_groups});
             next += *std::ranges::max_element(*own_groups) + 1;

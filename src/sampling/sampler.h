@@ -9,27 +9,38 @@
 
 namespace ink {
 
-/// A block of pixels by its upper left one. Blocks are aligned to the whole picture, so that the
-/// same rays travel together however the picture is cut into tiles.
+/// A block of 4 x 4 lattice points (pixels, where there is one point a pixel) by its upper left
+/// one. Blocks are aligned to the whole picture, so that the same rays travel together however the
+/// picture is cut into tiles.
 struct Block {
     int x = 0, y = 0;
+    int columns = kBlockSide, rows = kBlockSide;  ///< of it that are wanted; the rest is not traced
 };
 
-/// Traces sample rays for blocks of pixels. Each thread needs one of its own.
+/// Traces sample rays for blocks of a lattice of `per_pixel` points along a pixel's side, point i
+/// at (i + 1/2) / per_pixel. Each thread needs one of its own.
 class Sampler {
   public:
-    Sampler(const Tracer& tracer, const Camera& camera) : tracer_(tracer), camera_(camera) {}
+    Sampler(const Tracer& tracer, const Camera& camera, int per_pixel = 1)
+        : tracer_(tracer), camera_(camera), spacing_(1.0F / static_cast<float>(per_pixel)) {}
 
-    /// One packet a block: the rays through every pixel's centre plus `offset` (pixels). Normals of
-    /// hits come back with unit length and facing the ray's origin.
+    /// One packet a block: the rays through every point plus `offset` (pixels). Normals of hits
+    /// come back with unit length and facing the ray's origin.
     void trace_blocks(std::span<const Block> blocks, Vec2f offset, std::span<HitPacket> hits);
 
-    /// The ray stencils of a block's samples at the pixel centres plus `offset`: one packet for each
-    /// of the stencil's points. The pixels of a block share the point, which keeps the rays of a
-    /// packet as coherent as those of the block itself. Normals likewise if `with_normals`, else as
-    /// the tracer gives them.
+    /// The ray stencils of a block's samples at the lattice points plus `offset`: one packet for
+    /// each of the stencil's points. The pixels of a block share the point, which keeps the rays of
+    /// a packet as coherent as those of the block itself. Normals likewise if `with_normals`, else
+    /// as the tracer gives them.
     void trace_stencils(Block block, Vec2f offset, std::span<const Vec2f> stencil,
                         bool with_normals, std::span<HitPacket> hits);
+
+    /// Rays through any points of the screen (pixels), sixteen a packet in the order given; the
+    /// last packet is filled up with inactive ones. Normals as in trace_blocks.
+    void trace_points(std::span<const Vec2f> points, std::vector<HitPacket>& hits);
+
+    /// The rays of the last call, packet by packet.
+    std::span<const RayPacket> packets() const { return packets_; }
 
     std::size_t rays() const { return rays_; }  ///< traced so far
 
@@ -38,6 +49,7 @@ class Sampler {
 
     const Tracer& tracer_;
     const Camera& camera_;
+    float spacing_;
     std::vector<RayPacket> packets_;
     std::size_t rays_ = 0;
 };

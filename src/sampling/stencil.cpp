@@ -24,8 +24,9 @@ std::vector<Vec2f> multisample_offsets(int samples) {
     if (side * side == samples) {
         for (int j = 0; j < side; ++j) {
             for (int i = 0; i < side; ++i) {
-                offsets.push_back({(static_cast<float>(i) + 0.5F) / static_cast<float>(side) - 0.5F,
-                                   (static_cast<float>(j) + 0.5F) / static_cast<float>(side) - 0.5F});
+                offsets.push_back(
+                    {(static_cast<float>(i) + 0.5F) / static_cast<float>(side) - 0.5F,
+                     (static_cast<float>(j) + 0.5F) / static_cast<float>(side) - 0.5F});
             }
         }
         return offsets;

@@ -73,9 +73,13 @@ Shader::Shader(const Scene& scene, const Camera& camera, const ShadingSettings& 
             const auto& mesh = std::get<Mesh>(object.shape);
             surface.triangles = mesh.triangles.data();
             if (!mesh.colors.empty()) surface.vertex_colors = mesh.colors.data();
-            if (!mesh.corner_normals.empty()) surface.corner_normals = mesh.corner_normals[0].data();
+            if (!mesh.corner_normals.empty())
+                surface.corner_normals = mesh.corner_normals[0].data();
+            const bool own = !mesh.line_normals.empty();
+            surface.line_normals = own ? mesh.line_normals[0].data() : surface.corner_normals;
         }
-        any_smooth_ |= surface.corner_normals != nullptr;
+        any_smooth_ |= surface.line_normals != nullptr;
+        any_line_normals_ |= surface.line_normals != surface.corner_normals;
         surfaces_.push_back(surface);
     }
 
@@ -99,16 +103,39 @@ Shader::Shader(const Scene& scene, const Camera& camera, const ShadingSettings& 
 }
 
 bool Shader::shade(const HitPacket& hits, ColorPacket& colors) const {
+    NormalPacket normals;
+    smooth(hits, normals);
+    return shade(hits, normals, colors);
+}
+
+bool Shader::shade(const HitPacket& hits, const NormalPacket& normals, ColorPacket& colors) const {
     const std::uint32_t object = shared_object(hits);
     if (object == kNoObject || mode_ == ShadeMode::none) {
         colors = background_;
         return object != kNoObject;
     }
     look_up_colors(hits, object, colors);
-    NormalPacket normals{hits.normal_x, hits.normal_y, hits.normal_z};
-    if (any_smooth_) smooth_normals(hits, object, normals);
     illuminate(hits, normals, lighting_, background_, colors);
     return true;
+}
+
+void Shader::smooth(const HitPacket& hits, NormalPacket& normals) const {
+    normals = {hits.normal_x, hits.normal_y, hits.normal_z};
+    if (any_smooth_) interpolate(hits, &Surface::corner_normals, normals);
+}
+
+void Shader::line_normals(const HitPacket& hits, NormalPacket& normals) const {
+    normals = {hits.normal_x, hits.normal_y, hits.normal_z};
+    if (any_smooth_) interpolate(hits, &Surface::line_normals, normals);
+}
+
+void Shader::prefetch(const HitPacket& hits) const {
+    if (!any_smooth_) return;
+    for (int i = 0; i < kLanes; ++i) {
+        const auto* normals =
+            hits.object[i] == kNoObject ? nullptr : surfaces_[hits.object[i]].corner_normals;
+        if (normals != nullptr) __builtin_prefetch(normals + std::size_t{3} * hits.primitive[i]);
+    }
 }
 
 Color Shader::surface_color(const Surface& surface, const HitPacket& hits, int lane) {
@@ -144,20 +171,19 @@ void Shader::look_up_colors(const HitPacket& hits, std::uint32_t object,
     }
 }
 
-void Shader::smooth_normals(const HitPacket& hits, std::uint32_t object,
-                            NormalPacket& normals) const {
+void Shader::interpolate(const HitPacket& hits, const std::uint32_t* Surface::*source,
+                         NormalPacket& normals) const {
+    const std::uint32_t object = shared_object(hits);
+    if (object == kNoObject) return;
     if (object != kSeveralObjects) {
-        const Surface& surface = surfaces_[object];
-        if (surface.corner_normals != nullptr) {
-            interpolate_normals(surface.corner_normals, object, hits, normals);
-        }
+        const std::uint32_t* packed = surfaces_[object].*source;
+        if (packed != nullptr) interpolate_normals(packed, object, hits, normals);
         return;
     }
     for (std::uint32_t k = 0; k < surfaces_.size(); ++k) {
+        const std::uint32_t* packed = surfaces_[k].*source;
         const bool seen = std::ranges::find(hits.object, k) != hits.object.end();
-        if (seen && surfaces_[k].corner_normals != nullptr) {
-            interpolate_normals(surfaces_[k].corner_normals, k, hits, normals);
-        }
+        if (seen && packed != nullptr) interpolate_normals(packed, k, hits, normals);
     }
 }
 

@@ -30,6 +30,10 @@ struct ColorPacket {
     Lanes<float> r, g, b, a;
 };
 
+struct NormalPacket {
+    Lanes<float> x, y, z;
+};
+
 /// The mean of several packets: sum them, then scale.
 void add(const ColorPacket& colors, ColorPacket& sum);
 void scale(ColorPacket& colors, float factor);
@@ -41,9 +45,20 @@ class Shader {
   public:
     Shader(const Scene& scene, const Camera& camera, const ShadingSettings& settings);
 
-    /// Colours of what a packet saw. Normals must be of unit length and face the viewer. False where
-    /// all of it is background.
+    /// Colours of what a packet saw. Normals must be of unit length and face the viewer. False
+    /// where all of it is background.
     bool shade(const HitPacket& hits, ColorPacket& colors) const;
+    /// The same, from normals that `smooth` has made.
+    bool shade(const HitPacket& hits, const NormalPacket& normals, ColorPacket& colors) const;
+    /// Shading normals: interpolated where a mesh has normals at its corners, else geometric.
+    void smooth(const HitPacket& hits, NormalPacket& normals) const;
+    /// Normals that creases are found by: as `smooth`, but without what a file's own normals hide.
+    void line_normals(const HitPacket& hits, NormalPacket& normals) const;
+    /// Whether `line_normals` differ from what `smooth` gives for any object.
+    bool has_line_normals() const { return any_line_normals_; }
+
+    /// Asks the cache for what shading these hits will read, to be called a few packets ahead.
+    void prefetch(const HitPacket& hits) const;
 
     const ColorPacket& background() const { return background_; }
 
@@ -54,9 +69,7 @@ class Shader {
         const Rgb8* vertex_colors = nullptr;
         const Mesh::Triangle* triangles = nullptr;
         const std::uint32_t* corner_normals = nullptr;  ///< three a triangle
-    };
-    struct NormalPacket {
-        Lanes<float> x, y, z;
+        const std::uint32_t* line_normals = nullptr;    ///< the same unless a mesh has its own
     };
     struct Lighting {
         Vec3f key_dir, fill_dir, up;
@@ -66,7 +79,9 @@ class Shader {
 
     static Color surface_color(const Surface& surface, const HitPacket& hits, int lane);
     void look_up_colors(const HitPacket& hits, std::uint32_t object, ColorPacket& colors) const;
-    void smooth_normals(const HitPacket& hits, std::uint32_t object, NormalPacket& normals) const;
+    /// `source` is one of a surface's two arrays of normals.
+    void interpolate(const HitPacket& hits, const std::uint32_t* Surface::*source,
+                     NormalPacket& normals) const;
     /// For the lanes that hit `object`.
     static void interpolate_normals(const std::uint32_t* corner_normals, std::uint32_t object,
                                     const HitPacket& hits, NormalPacket& normals);
@@ -75,7 +90,8 @@ class Shader {
                            ColorPacket& colors);
 
     std::vector<Surface> surfaces_;
-    bool any_smooth_ = false;  ///< has corner normals
+    bool any_smooth_ = false;        ///< has normals at corners
+    bool any_line_normals_ = false;  ///< has line normals other than its corner normals
     ShadeMode mode_;
     Lighting lighting_{};
     ColorPacket background_;

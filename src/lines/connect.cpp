@@ -1,0 +1,171 @@
+#include "lines/connect.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace ink {
+
+namespace {
+
+// Sides of a cell, clockwise.
+constexpr int kTop = 0;
+constexpr int kRight = 1;
+constexpr int kBottom = 2;
+constexpr int kLeft = 3;
+
+float distance_squared(Vec2f a, Vec2f b) {
+    const Vec2f d = b - a;
+    return d.x * d.x + d.y * d.y;
+}
+
+Vec2f nearest_on_segment(Vec2f p, Vec2f a, Vec2f b) {
+    const Vec2f d = b - a;
+    const float squared = d.x * d.x + d.y * d.y;
+    if (squared == 0.0F) return a;
+    const float s = ((p.x - a.x) * d.x + (p.y - a.y) * d.y) / squared;
+    return a + d * std::clamp(s, 0.0F, 1.0F);
+}
+
+}  // namespace
+
+void Connector::connect(const SampleGrid& grid, std::span<const SuspectEdge> edges,
+                        std::span<const Crossing> crossings, std::vector<Segment>& segments) {
+    segments.clear();
+    members_.clear();
+    const auto cells_across = static_cast<std::uint32_t>(grid.width - 1);
+    const auto add_member = [&](int i, int j, int side, std::size_t crossing) {
+        if (i < 0 || j < 0 || i >= grid.width - 1 || j >= grid.height - 1) return;
+        const auto cell = static_cast<std::uint64_t>(j) * cells_across + static_cast<unsigned>(i);
+        members_.push_back(cell << 34U | static_cast<std::uint64_t>(side) << 32U | crossing);
+    };
+    for (std::size_t k = 0; k < crossings.size(); ++k) {
+        const SuspectEdge& edge = edges[crossings[k].edge];
+        add_member(edge.i, edge.j, edge.down ? kLeft : kTop, k);
+        add_member(edge.down ? edge.i - 1 : edge.i, edge.down ? edge.j : edge.j - 1,
+                   edge.down ? kRight : kBottom, k);
+    }
+    std::ranges::sort(members_);
+
+    for (std::size_t k = 0; k < members_.size();) {
+        const std::uint64_t cell = members_[k] >> 34U;
+        const auto i = static_cast<int>(cell % cells_across);
+        const auto j = static_cast<int>(cell / cells_across);
+        ports_.clear();
+        for (; k < members_.size() && members_[k] >> 34U == cell; ++k) {
+            const Crossing& crossing = crossings[members_[k] & 0xFFFFFFFFU];
+            add_port(grid, i, j, static_cast<int>(members_[k] >> 32U & 3U), edges[crossing.edge],
+                     crossing);
+        }
+        first_segment_ = segments.size();
+        join_ports(segments);
+    }
+}
+
+void Connector::add_port(const SampleGrid& grid, int i, int j, int side, const SuspectEdge& edge,
+                         const Crossing& crossing) {
+    const Vec2f corner = grid.point(i, j);
+    const Vec2f inside = (crossing.point - corner) * (1.0F / grid.spacing);
+    const auto first = static_cast<std::uint32_t>(grid.index(edge.i, edge.j));
+    const auto second = static_cast<std::uint32_t>(edge.down ? grid.index(edge.i, edge.j + 1)
+                                                             : grid.index(edge.i + 1, edge.j));
+    Port port{0.0F, &crossing, crossing.first, crossing.second, first, second};
+    switch (side) {
+        case kTop: port.way = inside.x; break;
+        case kRight: port.way = 1.0F + inside.y; break;
+        case kBottom: port.way = 3.0F - inside.x; break;
+        default: port.way = 4.0F - inside.y; break;
+    }
+    if (side == kBottom || side == kLeft) {  // walked from the second end to the first
+        std::swap(port.before, port.after);
+        std::swap(port.before_sample, port.after_sample);
+    }
+    ports_.push_back(port);
+}
+
+void Connector::join_ports(std::vector<Segment>& segments) {
+    std::ranges::sort(ports_, {}, &Port::way);
+    while (ports_.size() >= 2 && join_best_pair(segments)) {
+    }
+    if (!ports_.empty()) join_junction(segments);
+}
+
+/// Joins the two neighbouring ports, if any, between which a line can run without cutting another:
+/// the ID before the first is the ID after the second, and both are of one type. Prefers short
+/// ways, and ports on different sides: a wire is to be followed, not cut off.
+bool Connector::join_best_pair(std::vector<Segment>& segments) {
+    const std::size_t count = ports_.size();
+    std::size_t best = count;
+    float best_cost = std::numeric_limits<float>::max();
+    for (std::size_t k = 0; k < count; ++k) {
+        const Port& p = ports_[k];
+        const Port& q = ports_[(k + 1) % count];
+        const bool same_line = p.before == q.after && p.after == q.before &&
+                               (p.before != p.after || p.crossing->type == q.crossing->type);
+        if (!same_line || (count == 2 && k == 1)) continue;
+        const bool same_side = std::floor(p.way) == std::floor(q.way);
+        const float cost =
+            distance_squared(p.crossing->point, q.crossing->point) + (same_side ? 1e6F : 0.0F);
+        if (cost < best_cost) {
+            best = k;
+            best_cost = cost;
+        }
+    }
+    if (best == count) return false;
+    segments.push_back(make_segment(ports_[best], ports_[(best + 1) % count]));
+    const std::size_t second = (best + 1) % count;
+    ports_.erase(ports_.begin() + static_cast<std::ptrdiff_t>(std::max(best, second)));
+    ports_.erase(ports_.begin() + static_cast<std::ptrdiff_t>(std::min(best, second)));
+    return true;
+}
+
+/// Joins what no pair was found for. If one geometry is in front at exactly two ports, its outline
+/// goes through and the others end on it; else all meet in the middle.
+void Connector::join_junction(std::vector<Segment>& segments) {
+    if (ports_.size() == 1) {
+        // A crease or a jump that ends on another line, or fades out.
+        if (segments.size() == first_segment_) return;
+        const Segment& line = segments[first_segment_];
+        const Vec2f end = nearest_on_segment(ports_[0].crossing->point, line.a, line.b);
+        segments.push_back(make_segment(ports_[0], end));
+        return;
+    }
+    for (const Port& owner : ports_) {
+        const GeometryId front = owner.crossing->nearer;
+        const auto owned = [&](const Port& p) {
+            return p.crossing->nearer == front && p.crossing->first != p.crossing->second;
+        };
+        if (ports_.size() != 3 || std::ranges::count_if(ports_, owned) != 2) continue;
+        std::ranges::stable_partition(ports_, owned);
+        segments.push_back(make_segment(ports_[0], ports_[1]));
+        const Segment through = segments.back();
+        segments.push_back(make_segment(
+            ports_[2], nearest_on_segment(ports_[2].crossing->point, through.a, through.b)));
+        return;
+    }
+    Vec2f middle;
+    for (const Port& port : ports_) middle = middle + port.crossing->point;
+    middle = middle * (1.0F / static_cast<float>(ports_.size()));
+    for (const Port& port : ports_) segments.push_back(make_segment(port, middle));
+}
+
+/// Going clockwise round the cell, a line that enters it at `from` has what comes after that port
+/// on its left (y points down).
+Segment Connector::make_segment(const Port& from, const Port& to) {
+    const Crossing& p = *from.crossing;
+    const Crossing& q = *to.crossing;
+    Segment segment = make_segment(from, q.point);
+    segment.spans_cell = true;
+    segment.strength = 0.5F * (p.strength + q.strength);
+    segment.t = 0.5F * (p.t + q.t);
+    return segment;
+}
+
+Segment Connector::make_segment(const Port& from, Vec2f to) {
+    const Crossing& p = *from.crossing;
+    return {
+        p.point,           to, p.type, p.strength, p.t, from.after, from.before, from.after_sample,
+        from.before_sample};
+}
+
+}  // namespace ink

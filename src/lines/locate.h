@@ -1,0 +1,100 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "lines/detect.h"
+#include "lines/line_type.h"
+#include "sampling/samples.h"
+
+namespace ink {
+
+/// How crossings are found and what they count as. Like detection's, these thresholds have no
+/// length in them.
+struct LocateSettings {
+    int steps = 6;  ///< of bisection: to 2^-6 of the lattice's spacing
+    /// Two surfaces meet if their depths on the two sides of a crossing differ by no more than this
+    /// many times what their slopes allow over the last interval.
+    float meeting_slack = 3.0F;
+    /// Where a slope is steeper than this, the interval says too little: bisect further, then
+    /// decide.
+    float steep_slope = 4.0F;
+    int steep_steps = 5;
+    /// Each step must leave this share of a jump or a turn, or it is none: on a smooth surface a
+    /// step halves it at least. The jump at a limb shrinks too, as the front surface's normal
+    /// tilts, but only by the root of 1/2.
+    float surviving_share = 0.6F;
+    /// No step need leave less than this of a turn: the rest is the curve of the sides.
+    float surviving_turn = 0.3F;
+    /// At a limb the slope grows by the root of 2 a step, and the difference of the depths shrinks
+    /// by no more; where surfaces meet, slopes stay and the difference shrinks by 2. Over the
+    /// `steep_steps` a limb's slope grows by this much at least, and this share of the gap is left.
+    float limb_growth = 2.0F;
+    float limb_gap = 0.125F;
+    /// Creases: none below the first angle, full strength from the second on, smoothstep between.
+    float crease_min_deg = 10.0F;
+    float crease_full_deg = 30.0F;
+};
+
+/// A point where a line crosses an edge of the lattice.
+struct Crossing {
+    Vec2f point;
+    LineType type = LineType::silhouette;
+    float strength = 1.0F;
+    float t = 0.0F;          ///< of the nearer side
+    std::uint32_t edge = 0;  ///< index of the suspect edge
+    /// IDs at the edge's first and second end's side.
+    GeometryId first = kBackground, second = kBackground;
+    GeometryId nearer = kBackground;  ///< the one of the two that lies in front
+};
+
+/// Bisects suspect edges by asking for more samples, all edges in step, and classifies what is
+/// found. Where a third geometry turns up in between, both crossings are kept; what proves to be
+/// smooth is dropped. Crossings come in the order of the edges, those of one edge from its first
+/// end on.
+class Locator {
+  public:
+    Locator(const Viewpoint& viewpoint, const LocateSettings& settings);
+
+    void locate(const SampleGrid& grid, std::span<const SuspectEdge> edges,
+                const SampleFunction& sample, std::vector<Crossing>& crossings);
+
+  private:
+    /// The part of a lattice edge that still holds a discontinuity.
+    struct Interval {
+        Vec2f a, b;
+        Sample at_a, at_b;
+        Suspicion suspicion;
+        bool may_split;
+        std::uint32_t edge;
+        float first_jump, first_turn;    ///< between the edge's ends
+        float gap = 0.0F, slope = 0.0F;  ///< where steep: before it was refined
+        bool smooth = false;             ///< proved to hold nothing
+    };
+
+    void start(const SampleGrid& grid, std::span<const SuspectEdge> edges);
+    void halve(const SampleFunction& sample);
+    void sample_middles(const SampleFunction& sample);
+    void narrow(std::size_t k, Vec2f point, const Sample& sample);
+    void split(std::size_t k, Vec2f point, const Sample& sample);
+    void refine_steep(const SampleFunction& sample);
+    bool surfaces_meet(const Interval& interval) const;
+    bool has_jump(const Interval& interval) const;
+    bool has_crease(const Interval& interval) const;
+    bool classify(const Interval& interval, Crossing& crossing) const;
+    float slope(const Sample& sample) const;
+    float steeper_slope(const Interval& interval) const;
+    float gap(const Interval& interval) const;
+
+    Viewpoint viewpoint_;
+    LocateSettings settings_;
+    float least_turn_;         ///< of a crease, as a chord
+    float jump_share_ = 1.0F;  ///< that must be left after the steps so far
+    std::vector<Interval> intervals_;
+    std::vector<std::size_t> active_;
+    std::vector<Vec2f> points_;
+    std::vector<Sample> samples_;
+};
+
+}  // namespace ink

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "base/vec.h"
+#include "lines/line_type.h"
+#include "scene/ids.h"
+
+namespace ink {
+
+/// A piece of a line, straight, no longer than a lattice cell's diagonal.
+struct Segment {
+    Vec2f a, b;  ///< ends, pixels
+    LineType type = LineType::silhouette;
+    float strength = 1.0F;  ///< [0, 1]; below 1 for creases of small angle
+    float t = 0.0F;         ///< of the nearer side, distance along the ray as in Sample
+    /// Geometry on the left and on the right of the way from a to b (y points down); equal for
+    /// self-occlusions and creases.
+    GeometryId left = kBackground, right = kBackground;
+    /// Lattice points whose colours the two sides have: indices into the grid that was searched.
+    std::uint32_t left_sample = 0, right_sample = 0;
+    bool spans_cell =
+        false;  ///< runs from one side of its cell to another, not to a junction in it
+};
+
+}  // namespace ink

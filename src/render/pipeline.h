@@ -1,0 +1,85 @@
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <functional>
+#include <mutex>
+#include <optional>
+
+#include "accel/tracer.h"
+#include "camera/camera.h"
+#include "film/film.h"
+#include "render/aovs.h"
+#include "render/render.h"
+#include "render/settings.h"
+#include "sampling/line_ids.h"
+#include "shading/shading.h"
+
+namespace ink {
+
+/// What every method works with.
+struct Pipeline {
+    Pipeline(const Scene& scene, const Tracer& scene_tracer, const Settings& all, Film& target)
+        : tracer(scene_tracer),
+          settings(all),
+          camera(scene, all.view, all.size),
+          shader(scene, camera, all.shading),
+          ids(scene, all.ids),
+          film(target) {
+        if (!all.aovs.empty()) aovs.emplace(scene, camera, all.aovs, target);
+    }
+
+    const Tracer& tracer;
+    const Settings& settings;
+    Camera camera;
+    Shader shader;
+    LineIds ids;
+    Film& film;
+    std::optional<AovWriter> aovs;
+};
+
+/// Runs a picture's work items in parallel, watches for cancellation and reports progress.
+class WorkLoop {
+  public:
+    /// `items` in all, over every call of `run`.
+    WorkLoop(int threads, const RenderControl& control, std::size_t items)
+        : threads_(threads), control_(control), items_(items) {}
+
+    int threads() const { return threads_; }
+    /// Calls `body(item, worker)` as parallel_for does. Throws Cancelled when told to stop.
+    void run(std::size_t count,
+             const std::function<void(std::size_t item, std::size_t worker)>& body);
+
+  private:
+    int threads_;
+    const RenderControl& control_;
+    std::size_t items_;
+    std::size_t done_ = 0;
+    std::mutex mutex_;
+};
+
+/// Adds the time of its life to a counter.
+class Timer {
+  public:
+    using Clock = std::chrono::steady_clock;
+
+    explicit Timer(double& total_ms) : total_ms_(total_ms), start_(Clock::now()) {}
+    Timer(const Timer&) = delete;
+    Timer& operator=(const Timer&) = delete;
+    ~Timer() {
+        total_ms_ += std::chrono::duration<double, std::milli>(Clock::now() - start_).count();
+    }
+
+  private:
+    double& total_ms_;
+    Clock::time_point start_;
+};
+
+/// Method "stencil": Choudhury and Parker 2009, section 3. Renders the whole film.
+RenderStats render_stencils(const Pipeline& pipeline, const RenderControl& control);
+
+/// Method "edges": discontinuities found on a lattice, located by bisection and drawn with exact
+/// coverage. Renders the whole film.
+RenderStats render_edges(const Pipeline& pipeline, const RenderControl& control);
+
+}  // namespace ink

@@ -1,0 +1,66 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "base/vec.h"
+#include "scene/ids.h"
+
+namespace ink {
+
+/// What one ray saw, as far as lines depend on it.
+struct Sample {
+    GeometryId id = kBackground;
+    Vec3f position;  ///< scene frame; unset on a miss
+    Vec3f normal;    ///< shading normal, unit, faces the viewer; unset on a miss
+    float t = 0.0F;  ///< distance along the ray from the plane on which all rays start, scene units
+};
+
+/// From where rays come, for telling how steeply a surface is seen.
+struct Viewpoint {
+    Vec3f eye;  ///< perspective: where all rays meet, scene frame
+    Vec3f dir;  ///< orthographic: direction of all rays, unit
+    bool parallel = false;
+
+    Vec3f ray_direction(Vec3f at) const { return parallel ? dir : normalize(at - eye); }
+};
+
+/// Asks for samples at points of the screen (pixels): as many out as in.
+using SampleFunction = std::function<void(std::span<const Vec2f> points, std::span<Sample> out)>;
+
+/// Samples at the points of a regular lattice of q x q a pixel, plane by plane. Point (i, j) of the
+/// grid is lattice point (x0 + i, y0 + j), at ((x0 + i + 1/2) / q, (y0 + j + 1/2) / q) on screen.
+struct SampleGrid {
+    int x0 = 0, y0 = 0;
+    int width = 0, height = 0;  ///< points
+    float spacing = 1.0F;       ///< 1 / q, pixels
+
+    std::vector<GeometryId> id;
+    std::vector<float> px, py, pz;  ///< position
+    std::vector<float> nx, ny, nz;  ///< normal
+    std::vector<float> t;
+
+    void resize(int new_width, int new_height) {
+        width = new_width;
+        height = new_height;
+        // Loops over a row may read a vector beyond its end.
+        const auto size = static_cast<std::size_t>(width) * static_cast<std::size_t>(height) + 16;
+        id.resize(size);
+        for (auto* plane : {&px, &py, &pz, &nx, &ny, &nz, &t}) plane->resize(size);
+    }
+    std::size_t index(int i, int j) const {
+        return static_cast<std::size_t>(j) * static_cast<std::size_t>(width) +
+               static_cast<std::size_t>(i);
+    }
+    Vec2f point(int i, int j) const {
+        return {(static_cast<float>(x0 + i) + 0.5F) * spacing,
+                (static_cast<float>(y0 + j) + 0.5F) * spacing};
+    }
+    Sample sample(std::size_t k) const {
+        return {id[k], {px[k], py[k], pz[k]}, {nx[k], ny[k], nz[k]}, t[k]};
+    }
+};
+
+}  // namespace ink
