@@ -61,14 +61,22 @@ std::vector<Variant> variants(Size size, int most_threads, bool stencils) {
     Settings plain;
     plain.size = size;
     plain.threads = 1;
-    plain.compose = Compose::shaded;
+    plain.lines = {};
     std::vector<Variant> list{{"no lines", plain}};
     Settings threaded = plain;
     threaded.threads = most_threads;
     list.push_back({fmt::format("no lines, {} threads", most_threads), threaded});
+    for (const double width : {2.0, 8.0}) {
+        Settings lines = plain;
+        lines.lines = LineTypes::all();
+        lines.line_width.value = width;
+        list.push_back({fmt::format("edges, {} px", width), lines});
+    }
     for (int rings = 1; stencils && rings <= 3; ++rings) {
         Settings lines = plain;
-        lines.compose = Compose::both;
+        lines.lines = LineTypes::all();
+        lines.line_width.value = 2.0;
+        lines.method = Method::stencil;
         lines.rings = rings;
         list.push_back({fmt::format("stencil, N = {}", rings), lines});
     }
@@ -95,7 +103,7 @@ Result measure(const NamedScene& named, Size size, int rounds, int threads, bool
         for (std::size_t k = 0; k < list.size(); ++k) {
             RenderStats stats;
             double best = 1e30;
-            const int tries = list[k].settings.compose == Compose::shaded ? 2 : 1;
+            const int tries = list[k].settings.method == Method::edges ? 2 : 1;
             for (int i = 0; i < tries; ++i) {
                 render(scene, *tracer, list[k].settings, {}, {}, &stats);
                 best = std::min(best, stats.render_ms);
