@@ -49,11 +49,11 @@ void check(RTCDevice device) {
 /// of 12-byte vertices need four bytes behind the end, which a vector's slack does not promise.
 GeometryHandle make_triangles(RTCDevice device, const Mesh& mesh) {
     GeometryHandle geometry(rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE));
-    void* vertices =
+    auto* vertices = static_cast<Vec3f*>(
         rtcSetNewGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                                sizeof(Vec3f), mesh.vertices.size());
+                                sizeof(Vec3f), mesh.vertices.size()));
     check(device);
-    std::memcpy(vertices, mesh.vertices.data(), mesh.vertices.size() * sizeof(Vec3f));
+    std::ranges::copy(mesh.vertices, vertices);
     rtcSetSharedGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
                                mesh.triangles.data(), 0, sizeof(Mesh::Triangle),
                                mesh.triangles.size());
