@@ -383,8 +383,7 @@ TEST_P(StraightLine, HasTheWidthThatWasAskedForAtAnyAngleAndIsCentred) {
             for (const double width : {0.5, 1.0, 2.0, 3.3, 8.0, 20.0}) {
                 const Band band =
                     measure(draw(found.segments, width, kTile), kTile, angle_deg, through);
-                // Half a pixel on a lattice four times as fine comes out up to 5 % too wide.
-                EXPECT_NEAR(band.width, width, q == 4 && width < 1.0 ? 0.03 : 0.02 * width)
+                EXPECT_NEAR(band.width, width, 0.02 * width)
                     << angle_deg << " degrees, width " << width;
                 worst_width = std::max(worst_width, std::abs(band.width / width - 1.0));
                 offsets[n++] += band.offset / 4;

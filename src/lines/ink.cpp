@@ -39,7 +39,11 @@ void draw_solid(const Stroke& stroke, float x, float y, float* coverage, float* 
         const float inverse = 1.0F / std::max(distance, 1e-4F);
         const float nx = off ? vx * inverse : -along.y;
         const float ny = off ? vy * inverse : along.x;
-        inks[i] = band_coverage(distance, half, nx, ny) * strength;
+        // The round end of a segment must not claim more than its band does, or it would widen the
+        // lines that go on from it.
+        const float across = std::abs(ry * along.x - rx * along.y);
+        const float band = band_coverage(across, half, -along.y, along.x);
+        inks[i] = std::min(band_coverage(distance, half, nx, ny), band) * strength;
     }
     for (int i = 0; i < kLanes; ++i) coverage[i] = std::max(coverage[i], inks[i]);
     for (int i = 0; i < kLanes; ++i) t[i] = inks[i] > 0.0F ? std::min(t[i], stroke_t) : t[i];

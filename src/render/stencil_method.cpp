@@ -66,15 +66,35 @@ void trace_samples(Workspace& work, Vec2f offset) {
     work.sampler.trace_blocks(work.blocks, offset, work.hits);
 }
 
+/// Shades block k of the tile, of which those before it have been shaded. False: only background.
+bool shade_block(const Stencils& stencils, const Workspace& work, std::size_t k,
+                 ColorPacket& colors) {
+    constexpr std::size_t kAhead = 4;
+    const Shader& shader = stencils.pipeline.shader;
+    if (k + kAhead < work.blocks.size()) shader.prefetch(work.hits[k + kAhead]);
+    return shader.shade(work.hits[k], colors);
+}
+
 void shade_samples(const Stencils& stencils, Workspace& work) {
     const Timer timer(work.stats.shade_ms);
     work.colors.resize(work.blocks.size());
     work.seen.resize(work.blocks.size());
-    constexpr std::size_t kAhead = 4;
     for (std::size_t k = 0; k < work.blocks.size(); ++k) {
-        if (k + kAhead < work.blocks.size())
-            stencils.pipeline.shader.prefetch(work.hits[k + kAhead]);
-        work.seen[k] = stencils.pipeline.shader.shade(work.hits[k], work.colors[k]) ? 1 : 0;
+        work.seen[k] = shade_block(stencils, work, k, work.colors[k]) ? 1 : 0;
+    }
+}
+
+/// Where a pixel is its one sample, straight from the ray to the film.
+void shade_pixels(const Stencils& stencils, Workspace& work) {
+    const Timer timer(work.stats.shade_ms);
+    ColorPacket colors;
+    for (std::size_t k = 0; k < work.blocks.size(); ++k) {
+        const Block block = work.blocks[k];
+        if (shade_block(stencils, work, k, colors)) {
+            stencils.pipeline.film.put(block.x, block.y, colors);
+        } else {
+            stencils.pipeline.film.put_background(block.x, block.y);
+        }
     }
 }
 
@@ -143,9 +163,6 @@ void write_pixels(const Stencils& stencils, Workspace& work) {
             stencils.pipeline.film.put_background(block.x, block.y);
         }
     }
-    for (const Block block : work.empty) {
-        stencils.pipeline.film.put_background(block.x, block.y);
-    }
 }
 
 void write_aovs(const Stencils& stencils, const Workspace& work, Vec2f offset) {
@@ -162,6 +179,13 @@ void write_aovs(const Stencils& stencils, const Workspace& work, Vec2f offset) {
 /// c_s is mixed with the line's colour by e_s; a pixel is the mean of its samples.
 void render_tile(const Stencils& stencils, Workspace& work, const Tile& tile) {
     sort_blocks(tile, stencils.pipeline.camera, stencils.reach, work.blocks, work.empty);
+    for (const Block block : work.empty) {
+        stencils.pipeline.film.put_background(block.x, block.y);
+    }
+    if (stencils.plain() && !stencils.shaded && !stencils.pipeline.aovs) {
+        trace_samples(work, stencils.samples[0]);
+        return shade_pixels(stencils, work);
+    }
     work.sums.clear();
     for (const Vec2f offset : stencils.samples) {
         trace_samples(work, offset);
