@@ -1,0 +1,40 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "lines/detect.h"
+#include "lines/ink.h"
+#include "lines/line_type.h"
+#include "lines/locate.h"
+#include "lines/segment.h"
+#include "render/pipeline.h"
+#include "render/tiles.h"
+#include "sampling/samples.h"
+
+namespace ink {
+
+/// A line segment on its way from the pass that finds lines to the pass that draws them.
+struct ColoredSegment {
+    Segment segment;
+    std::array<float, 4> left, right;  ///< colours of the two sides, linear, premultiplied
+};
+
+/// The method's fixed parts, shared by all tiles.
+struct Edges {
+    explicit Edges(const Pipeline& shared);
+
+    const Pipeline& pipeline;
+    int q;  ///< lattice points along a pixel's side
+    bool draw_lines;
+    bool smooth_shading;  ///< blend the colours of pixels that a line cuts
+    DetectSettings detect;
+    LocateSettings locate;
+    LineTypes wanted;
+    InkSettings ink;
+    Viewpoint viewpoint;
+    int margin;  ///< pixels searched beyond the film's edge, for lines that reach in
+    std::vector<Tile> search_tiles, draw_tiles;
+};
+
+}  // namespace ink

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "base/lanes.h"
+#include "lines/ink.h"
+#include "render/edges_method.h"
+#include "render/tiles.h"
+
+namespace ink {
+
+/// Draws the lines of one tile after another.
+class LineDrawer {
+  public:
+    explicit LineDrawer(const Edges& edges) : edges_(edges), ink_(edges.ink) {}
+
+    void draw(const Tile& tile, const std::vector<std::vector<ColoredSegment>>& found);
+
+    RenderStats stats() const { return stats_; }
+
+  private:
+    static constexpr float kFixedPoint = 1 << 22;
+    static constexpr float kMostChange = 64.0F;
+
+    void gather(const Tile& tile, const std::vector<std::vector<ColoredSegment>>& found);
+    void smooth(const Tile& tile, const ColoredSegment& line);
+    void write(const Tile& tile);
+
+    const Edges& edges_;
+    InkTile ink_;
+    std::vector<const ColoredSegment*> near_;  ///< segments within reach of the tile
+    /// What smoothing adds to each pixel's colour: linear, premultiplied R, G, B, A. In fixed
+    /// point, for a sum that does not depend on the order of segments, and so not on the tiles.
+    std::array<std::vector<std::int32_t>, 4> shift_;
+    std::array<Lanes<float>, 4> shift_run_;
+    RenderStats stats_;
+};
+
+}  // namespace ink

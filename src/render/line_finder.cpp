@@ -1,0 +1,227 @@
+#include "render/line_finder.h"
+
+#include <algorithm>
+
+#include "base/multiversion.h"
+
+namespace ink {
+
+namespace {
+
+bool near_scene(const Camera& camera, const Block& block, int q) {
+    const Camera::ScreenBox& box = camera.scene_box();
+    const float scale = 1.0F / static_cast<float>(q);
+    const auto left = static_cast<float>(block.x) * scale;
+    const auto top = static_cast<float>(block.y) * scale;
+    const float side = kBlockSide * scale;
+    return left + side > box.left && left < box.right && top + side > box.top && top < box.bottom;
+}
+
+}  // namespace
+
+void LineFinder::trace_lattice(const Tile& tile) {
+    const Timer timer(stats_.trace_ms);
+    const int q = edges_.q;
+    // Cells hang on their upper left point, so the tile needs one more column and row of points.
+    grid_.x0 = tile.x0 * q;
+    grid_.y0 = tile.y0 * q;
+    grid_.spacing = 1.0F / static_cast<float>(q);
+    grid_.resize((tile.x1 - tile.x0) * q + 1, (tile.y1 - tile.y0) * q + 1);
+    std::ranges::fill(grid_.id, kBackground);
+
+    blocks_across_ = (grid_.width + kBlockSide - 1) / kBlockSide;
+    const int blocks_down = (grid_.height + kBlockSide - 1) / kBlockSide;
+    block_at_.clear();
+    blocks_.clear();
+    for (int j = 0; j < blocks_down; ++j) {
+        for (int i = 0; i < blocks_across_; ++i) {
+            const Block block{grid_.x0 + i * kBlockSide, grid_.y0 + j * kBlockSide,
+                              std::min(kBlockSide, grid_.width - i * kBlockSide),
+                              std::min(kBlockSide, grid_.height - j * kBlockSide)};
+            const bool near = near_scene(edges_.pipeline.camera, block, q);
+            block_at_.push_back(near ? static_cast<std::uint32_t>(blocks_.size()) : kEmptyBlock);
+            if (near) blocks_.push_back(block);
+        }
+    }
+    hits_.resize(blocks_.size());
+    normals_.resize(blocks_.size());
+    sampler_.trace_blocks(blocks_, {}, hits_);
+    constexpr std::size_t kAhead = 4;
+    for (std::size_t k = 0; k < blocks_.size(); ++k) {
+        if (k + kAhead < blocks_.size()) edges_.pipeline.shader.prefetch(hits_[k + kAhead]);
+        if (std::ranges::all_of(hits_[k].object, [](auto object) { return object == kNoObject; })) {
+            continue;  // the grid is background so far
+        }
+        edges_.pipeline.shader.smooth(hits_[k], normals_[k]);
+        fill_grid(k);
+    }
+}
+
+namespace {
+
+/// Positions and IDs of a packet.
+INKTRACE_MULTIVERSION
+void locate_hits(const RayPacket& rays, const HitPacket& hits, const NormalPacket& normals,
+                 std::array<Lanes<float>, 7>& values) {
+    for (int i = 0; i < kLanes; ++i) {
+        const bool hit = hits.object[i] != kNoObject;
+        const float t = hit ? hits.t[i] : 0.0F;
+        values[0][i] = rays.origin_x[i] + t * rays.dir_x[i];
+        values[1][i] = rays.origin_y[i] + t * rays.dir_y[i];
+        values[2][i] = rays.origin_z[i] + t * rays.dir_z[i];
+        values[3][i] = hit ? normals.x[i] : 0.0F;
+        values[4][i] = hit ? normals.y[i] : 0.0F;
+        values[5][i] = hit ? normals.z[i] : 0.0F;
+        values[6][i] = t;
+    }
+}
+
+}  // namespace
+
+void LineFinder::fill_grid(std::size_t block) {
+    Lanes<GeometryId> ids;
+    std::array<Lanes<float>, 7> values;
+    edges_.pipeline.ids.resolve(hits_[block], ids);
+    const Shader& shader = edges_.pipeline.shader;
+    NormalPacket separate;
+    if (shader.has_line_normals()) shader.line_normals(hits_[block], separate);
+    const NormalPacket& normals = shader.has_line_normals() ? separate : normals_[block];
+    locate_hits(sampler_.packets()[block], hits_[block], normals, values);
+    const int i0 = blocks_[block].x - grid_.x0;
+    const int j0 = blocks_[block].y - grid_.y0;
+    const int block_columns = blocks_[block].columns;
+    const int block_rows = blocks_[block].rows;
+    const std::array<float*, 7> planes{grid_.px.data(), grid_.py.data(), grid_.pz.data(),
+                                       grid_.nx.data(), grid_.ny.data(), grid_.nz.data(),
+                                       grid_.t.data()};
+    // A size known to the compiler makes each row one move.
+    const auto copy_rows = [&](const auto* from, auto* to, auto count) {
+        for (int j = 0; j < block_rows; ++j) {
+            std::copy_n(from + j * kBlockSide, count(), to + grid_.index(i0, j0 + j));
+        }
+    };
+    const auto copy_plane = [&](const auto* from, auto* to) {
+        if (block_columns == kBlockSide) {
+            copy_rows(from, to, [] { return kBlockSide; });
+        } else {
+            copy_rows(from, to, [&] { return block_columns; });
+        }
+    };
+    copy_plane(ids.data(), grid_.id.data());
+    for (std::size_t k = 0; k < planes.size(); ++k) copy_plane(values[k].data(), planes[k]);
+}
+
+void LineFinder::shade(const Tile& tile) {
+    const Timer timer(stats_.shade_ms);
+    const Pipeline& pipeline = edges_.pipeline;
+    colors_.resize(blocks_.size());
+    seen_.resize(blocks_.size());
+    for (std::size_t k = 0; k < blocks_.size(); ++k) {
+        seen_[k] = pipeline.shader.shade(hits_[k], normals_[k], colors_[k]) ? 1 : 0;
+    }
+    const Size size = pipeline.film.size();
+    for (int y = std::max(tile.y0, 0); y < std::min(tile.y1, size.height); y += kBlockSide) {
+        for (int x = std::max(tile.x0, 0); x < std::min(tile.x1, size.width); x += kBlockSide) {
+            put_pixels(x, y);
+            if (pipeline.aovs) put_aovs({x, y});
+        }
+    }
+}
+
+/// The block of pixels at (x, y): one lattice block, or the mean over q x q of them.
+void LineFinder::put_pixels(int x, int y) {
+    Film& film = edges_.pipeline.film;
+    const int q = edges_.q;
+    const int i0 = (x * q - grid_.x0) / kBlockSide;
+    const int j0 = (y * q - grid_.y0) / kBlockSide;
+    bool any = false;
+    for (int n = 0; n < q * q; ++n) {
+        const std::uint32_t k = block_index(i0 + n % q, j0 + n / q);
+        any |= k != kEmptyBlock && seen_[k] != 0;
+    }
+    if (!any) return film.put_background(x, y);
+    if (q == 1) return film.put(x, y, colors_[block_index(i0, j0)]);
+
+    ColorPacket mean{};
+    const float weight = 1.0F / static_cast<float>(q * q);
+    for (int lane = 0; lane < kLanes; ++lane) {
+        std::array<float, 4> sum{};
+        for (int n = 0; n < q * q; ++n) {
+            const int i = (x + lane % kBlockSide) * q + n % q - grid_.x0;
+            const int j = (y + lane / kBlockSide) * q + n / q - grid_.y0;
+            const std::array<float, 4> color = color_at(i, j);
+            for (std::size_t c = 0; c < 4; ++c) sum[c] += color[c] * weight;
+        }
+        mean.r[lane] = sum[0];
+        mean.g[lane] = sum[1];
+        mean.b[lane] = sum[2];
+        mean.a[lane] = sum[3];
+    }
+    film.put(x, y, mean);
+}
+
+/// What pixel centres see, whatever the lattice.
+void LineFinder::put_aovs(Block block) {
+    std::array<HitPacket, 1> hits;
+    pixel_sampler_.trace_blocks(std::array{block}, {}, hits);
+    edges_.pipeline.aovs->put(block, {}, hits[0]);
+}
+
+std::uint32_t LineFinder::block_index(int i, int j) const {
+    return block_at_[static_cast<std::size_t>(j) * static_cast<std::size_t>(blocks_across_) +
+                     static_cast<std::size_t>(i)];
+}
+
+/// Linear, premultiplied colour of a point of the grid.
+std::array<float, 4> LineFinder::color_at(int i, int j) const {
+    const std::uint32_t k = block_index(i / kBlockSide, j / kBlockSide);
+    const bool empty = k == kEmptyBlock;
+    const ColorPacket& colors = empty ? edges_.pipeline.shader.background() : colors_[k];
+    const int lane = empty ? 0 : j % kBlockSide * kBlockSide + i % kBlockSide;
+    return {colors.r[lane], colors.g[lane], colors.b[lane], colors.a[lane]};
+}
+
+std::vector<ColoredSegment> LineFinder::find_lines() {
+    const Timer timer(stats_.lines_ms);
+    if (!edges_.draw_lines && !edges_.smooth_shading) return {};
+    detect(grid_, edges_.detect, suspects_);
+    locator_.locate(grid_, suspects_, sample_, crossings_);
+    connector_.connect(grid_, suspects_, crossings_, segments_);
+    stats_.crossings += crossings_.size();
+
+    std::vector<ColoredSegment> found;
+    found.reserve(segments_.size());
+    for (const Segment& segment : segments_) {
+        const auto color = [&](std::uint32_t index) {
+            const auto width = static_cast<std::uint32_t>(grid_.width);
+            return color_at(static_cast<int>(index % width), static_cast<int>(index / width));
+        };
+        found.push_back({segment, color(segment.left_sample), color(segment.right_sample)});
+    }
+    return found;
+}
+
+/// More samples, for the bisection.
+void LineFinder::sample(std::span<const Vec2f> points, std::span<Sample> out) {
+    if (points.empty()) return;
+    sampler_.trace_points(points, point_hits_);
+    NormalPacket normals;
+    Lanes<GeometryId> ids;
+    std::array<Lanes<float>, 7> values;
+    for (std::size_t k = 0; k < point_hits_.size(); ++k) {
+        edges_.pipeline.shader.line_normals(point_hits_[k], normals);
+        edges_.pipeline.ids.resolve(point_hits_[k], ids);
+        locate_hits(sampler_.packets()[k], point_hits_[k], normals, values);
+        const std::size_t first = k * kLanes;
+        const std::size_t count = std::min<std::size_t>(kLanes, points.size() - first);
+        for (std::size_t n = 0; n < count; ++n) {
+            const int i = static_cast<int>(n);
+            out[first + n] = {ids[i],
+                              {values[0][i], values[1][i], values[2][i]},
+                              {values[3][i], values[4][i], values[5][i]},
+                              values[6][i]};
+        }
+    }
+}
+
+}  // namespace ink

@@ -1,0 +1,80 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "lines/connect.h"
+#include "lines/detect.h"
+#include "lines/locate.h"
+#include "lines/segment.h"
+#include "render/edges_method.h"
+#include "render/tiles.h"
+#include "sampling/sampler.h"
+#include "sampling/samples.h"
+#include "shading/shading.h"
+
+namespace ink {
+
+/// Finds the lines of one tile after another. Arrays over blocks have one entry a block that is
+/// near the scene.
+class LineFinder {
+  public:
+    explicit LineFinder(const Edges& edges)
+        : edges_(edges),
+          sampler_(edges.pipeline.tracer, edges.pipeline.camera, edges.q),
+          pixel_sampler_(edges.pipeline.tracer, edges.pipeline.camera),
+          locator_(edges.viewpoint, edges.locate),
+          sample_([this](std::span<const Vec2f> points, std::span<Sample> out) {
+              sample(points, out);
+          }) {}
+
+    /// Design: trace the lattice, detect, locate, connect. Shades the tile's pixels on the way.
+    std::vector<ColoredSegment> search(const Tile& tile) {
+        trace_lattice(tile);
+        shade(tile);
+        return find_lines();
+    }
+
+    RenderStats stats() const {
+        RenderStats result = stats_;
+        result.rays = sampler_.rays();
+        return result;
+    }
+
+  private:
+    void trace_lattice(const Tile& tile);
+    void fill_grid(std::size_t block);
+    void shade(const Tile& tile);
+    void put_pixels(int x, int y);
+    void put_aovs(Block block);
+    std::vector<ColoredSegment> find_lines();
+    void sample(std::span<const Vec2f> points, std::span<Sample> out);
+    std::uint32_t block_index(int i, int j) const;
+    std::array<float, 4> color_at(int i, int j) const;
+
+    static constexpr std::uint32_t kEmptyBlock = 0xFFFFFFFFU;
+
+    const Edges& edges_;
+    Sampler sampler_;
+    Sampler pixel_sampler_;
+    Locator locator_;
+    SampleFunction sample_;
+    Connector connector_;
+    SampleGrid grid_;
+    int blocks_across_ = 0;
+    std::vector<std::uint32_t> block_at_;  ///< of the tile's blocks, row by row; or kEmptyBlock
+    std::vector<Block> blocks_;
+    std::vector<HitPacket> hits_;
+    std::vector<NormalPacket> normals_;
+    std::vector<ColorPacket> colors_;
+    std::vector<std::uint8_t> seen_;
+    std::vector<HitPacket> point_hits_;
+    std::vector<SuspectEdge> suspects_;
+    std::vector<Crossing> crossings_;
+    std::vector<Segment> segments_;
+    RenderStats stats_;
+};
+
+}  // namespace ink
