@@ -7,6 +7,7 @@
 #include <limits>
 #include <variant>
 
+#include "base/error.h"
 #include "base/lanes.h"
 #include "base/multiversion.h"
 
@@ -41,6 +42,11 @@ RTCGeometry make_geometry(RTCDevice device, const Mesh& mesh) {
                                mesh.triangles.data(), 0, sizeof(Mesh::Triangle),
                                mesh.triangles.size());
     return geometry;
+}
+
+template <class Shape>
+RTCGeometry make_geometry(RTCDevice /*device*/, const Shape& /*shape*/) {
+    throw Error("the bare loop traces spheres and triangles only");
 }
 
 INKTRACE_MULTIVERSION

@@ -17,7 +17,7 @@ namespace inktrace {
 struct FileInfo {
     std::filesystem::path path;
     std::string format;       ///< "PDB"
-    std::string kind;         ///< "molecule", "particles" or "mesh"
+    std::string kind;         ///< "molecule", "particles", "mesh" or "shape"
     std::string length_unit;  ///< "angstrom"; empty where the format does not say
     int frames = 1;
     std::vector<std::pair<std::string, std::uint64_t>> counts;  ///< ("atoms", 327), ...

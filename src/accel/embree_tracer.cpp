@@ -13,6 +13,7 @@
 #include <string>
 #include <type_traits>
 
+#include "accel/shape_intersection.h"
 #include "accel/tracer.h"
 #include "base/error.h"
 
@@ -66,6 +67,91 @@ GeometryHandle make_spheres(RTCDevice device, const Spheres& spheres) {
     rtcSetSharedGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4,
                                spheres.spheres.data(), 0, sizeof(Sphere), spheres.spheres.size());
     return geometry;
+}
+
+/// Exact surfaces are Embree's user geometry: it asks for the bounds of a primitive, and for its
+/// intersection with up to 16 rays at a time. `meet(shape, primitive)` gives what takes a ray and
+/// its range and returns a hit.
+template <class Shape, class Meet>
+struct UserShape {
+    static void bounds(const RTCBoundsFunctionArguments* args) {
+        const auto& shape = *static_cast<const Shape*>(args->geometryUserPtr);
+        const Bounds3f box = Meet::bounds(shape, args->primID);
+        // Embree leaves out a primitive whose lower bound lies above its upper one.
+        *args->bounds_o = {box.lower.x, box.lower.y, box.lower.z, 0.0F,
+                           box.upper.x, box.upper.y, box.upper.z, 0.0F};
+    }
+
+    static void intersect(const RTCIntersectFunctionNArguments* args) {
+        const auto& shape = *static_cast<const Shape*>(args->geometryUserPtr);
+        const Meet meet(shape, args->primID);
+        const unsigned width = args->N;
+        RTCRayN* rays = RTCRayHitN_RayN(args->rayhit, width);
+        RTCHitN* hits = RTCRayHitN_HitN(args->rayhit, width);
+        for (unsigned i = 0; i < width; ++i) {
+            if (args->valid[i] == 0) continue;
+            const ShapeRay ray{{RTCRayN_org_x(rays, width, i), RTCRayN_org_y(rays, width, i),
+                                RTCRayN_org_z(rays, width, i)},
+                               {RTCRayN_dir_x(rays, width, i), RTCRayN_dir_y(rays, width, i),
+                                RTCRayN_dir_z(rays, width, i)}};
+            float& far = RTCRayN_tfar(rays, width, i);
+            const auto hit = meet(ray, RTCRayN_tnear(rays, width, i), far);
+            if (!hit) continue;
+            far = static_cast<float>(hit->t);
+            const Vec3f normal = to_float(normalize(hit->normal));
+            RTCHitN_Ng_x(hits, width, i) = normal.x;
+            RTCHitN_Ng_y(hits, width, i) = normal.y;
+            RTCHitN_Ng_z(hits, width, i) = normal.z;
+            RTCHitN_u(hits, width, i) = 0.0F;
+            RTCHitN_v(hits, width, i) = 0.0F;
+            RTCHitN_primID(hits, width, i) = args->primID;
+            RTCHitN_geomID(hits, width, i) = args->geomID;
+        }
+    }
+
+    static GeometryHandle make(RTCDevice device, const Shape& shape, std::size_t count) {
+        GeometryHandle geometry(rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER));
+        rtcSetGeometryUserPrimitiveCount(geometry.get(), static_cast<unsigned>(count));
+        rtcSetGeometryUserData(geometry.get(), const_cast<Shape*>(&shape));
+        rtcSetGeometryBoundsFunction(geometry.get(), bounds, nullptr);
+        rtcSetGeometryIntersectFunction(geometry.get(), intersect);
+        return geometry;
+    }
+};
+
+struct MeetGlyph {
+    MeetGlyph(const Glyphs& glyphs, unsigned i) : placed(glyphs.shape, glyphs.placements[i]) {}
+    auto operator()(const ShapeRay& ray, double near, double far) const {
+        return placed.intersect(ray, near, far);
+    }
+    static Bounds3f bounds(const Glyphs& glyphs, unsigned i) {
+        return glyph_bounds(glyphs.shape, glyphs.placements[i]);
+    }
+    PlacedShape placed;
+};
+
+struct MeetHexahedron {
+    MeetHexahedron(const Hexahedra& solids, unsigned i) : corners(solids.corners[i]) {}
+    auto operator()(const ShapeRay& ray, double near, double far) const {
+        return intersect(corners, ray, near, far);
+    }
+    static Bounds3f bounds(const Hexahedra& solids, unsigned i) {
+        return hexahedron_bounds(solids.corners[i]);
+    }
+    const Hexahedra::Corners& corners;
+};
+
+GeometryHandle make_geometry(RTCDevice device, const Spheres& shape) {
+    return make_spheres(device, shape);
+}
+GeometryHandle make_geometry(RTCDevice device, const Mesh& shape) {
+    return make_triangles(device, shape);
+}
+GeometryHandle make_geometry(RTCDevice device, const Glyphs& shape) {
+    return UserShape<Glyphs, MeetGlyph>::make(device, shape, shape.placements.size());
+}
+GeometryHandle make_geometry(RTCDevice device, const Hexahedra& shape) {
+    return UserShape<Hexahedra, MeetHexahedron>::make(device, shape, shape.corners.size());
 }
 
 PacketWidth widest_native(RTCDevice device) {
@@ -155,14 +241,7 @@ class EmbreeTracer final : public Tracer {
   private:
     void attach(const Object& object) {
         const GeometryHandle geometry = std::visit(
-            [&](const auto& shape) {
-                if constexpr (std::is_same_v<std::decay_t<decltype(shape)>, Spheres>) {
-                    return make_spheres(device_.get(), shape);
-                } else {
-                    return make_triangles(device_.get(), shape);
-                }
-            },
-            object.shape);
+            [&](const auto& shape) { return make_geometry(device_.get(), shape); }, object.shape);
         check(device_.get());
         rtcCommitGeometry(geometry.get());
         rtcAttachGeometry(scene_.get(), geometry.get());

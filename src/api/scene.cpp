@@ -20,6 +20,7 @@ std::string kind_name(ink::ObjectKind kind) {
         case ink::ObjectKind::molecule: return "molecule";
         case ink::ObjectKind::particles: return "particles";
         case ink::ObjectKind::mesh: return "mesh";
+        case ink::ObjectKind::shape: return "shape";
     }
     return {};
 }

@@ -32,8 +32,9 @@ Axes standard_axes(View view) {
 }
 
 Axes automatic_axes(const Scene& scene) {
-    const bool has_mesh = std::ranges::any_of(
-        scene.objects(), [](const Object& object) { return object.kind == ObjectKind::mesh; });
+    const bool has_mesh = std::ranges::any_of(scene.objects(), [](const Object& object) {
+        return object.kind == ObjectKind::mesh || object.kind == ObjectKind::shape;
+    });
     // 30 degrees to the side, 20 above: three faces of a box show, each with an area of its own.
     if (has_mesh) return {{0.46985, 0.34202, 0.81380}, {0, 1, 0}};
     const PrincipalAxes axes = principal_axes(scene);
@@ -64,10 +65,18 @@ std::array<double, 4> supports(const Scene& scene, const std::array<Vec3f, 4>& n
             reduce(shape->spheres.size(), [&](Vec3f n, std::size_t i) {
                 return dot(n, shape->spheres[i].centre) - shape->spheres[i].radius;
             });
+        } else if (const auto* mesh = std::get_if<Mesh>(&object.shape)) {
+            reduce(mesh->vertices.size(),
+                   [&](Vec3f n, std::size_t i) { return dot(n, mesh->vertices[i]); });
+        } else if (const auto* glyphs = std::get_if<Glyphs>(&object.shape)) {
+            reduce(glyphs->placements.size(), [&](Vec3f n, std::size_t i) {
+                const Vec3d opposite = to_double(-n);
+                return static_cast<float>(-support(glyphs->shape, glyphs->placements[i], opposite));
+            });
         } else {
-            const auto& mesh = std::get<Mesh>(object.shape);
-            reduce(mesh.vertices.size(),
-                   [&](Vec3f n, std::size_t i) { return dot(n, mesh.vertices[i]); });
+            const auto& solids = std::get<Hexahedra>(object.shape);
+            reduce(solids.corners.size() * 8,
+                   [&](Vec3f n, std::size_t i) { return dot(n, solids.corners[i / 8][i % 8]); });
         }
     }
     return least;

@@ -17,9 +17,15 @@ Matrix covariance(const Scene& scene) {
     std::size_t count = 0;
     const auto for_each_centre = [&](const auto& visit) {
         for (const Object& object : scene.objects()) {
-            const auto* shape = std::get_if<Spheres>(&object.shape);
-            if (shape == nullptr) continue;
-            for (const Sphere& sphere : shape->spheres) visit(to_double(sphere.centre));
+            if (const auto* shape = std::get_if<Spheres>(&object.shape)) {
+                for (const Sphere& sphere : shape->spheres) visit(to_double(sphere.centre));
+            } else if (const auto* glyphs = std::get_if<Glyphs>(&object.shape)) {
+                for (const Placement& p : glyphs->placements) visit(to_double(p.origin));
+            } else if (const auto* solids = std::get_if<Hexahedra>(&object.shape)) {
+                for (const auto& corners : solids->corners) {
+                    visit(to_double(hexahedron_bounds(corners).centre()));
+                }
+            }
         }
     };
     for_each_centre([&](Vec3d p) {

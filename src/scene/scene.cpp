@@ -37,6 +37,18 @@ Bounds3f shape_bounds(const Mesh& shape) {
                      [&](Bounds3f& box, std::size_t i) { box.add(shape.vertices[i]); });
 }
 
+Bounds3f shape_bounds(const Glyphs& shape) {
+    return bounds_of(shape.placements.size(), [&](Bounds3f& box, std::size_t i) {
+        box.add(glyph_bounds(shape.shape, shape.placements[i]));
+    });
+}
+
+Bounds3f shape_bounds(const Hexahedra& shape) {
+    return bounds_of(shape.corners.size(), [&](Bounds3f& box, std::size_t i) {
+        box.add(hexahedron_bounds(shape.corners[i]));
+    });
+}
+
 /// A change of frame: stored' = stored * scale + shift.
 struct Rebase {
     double scale;
@@ -63,6 +75,26 @@ void rebase(Mesh& shape, const Rebase& move) {
     });
 }
 
+void rebase(Glyphs& shape, const Rebase& move) {
+    parallel_ranges(shape.placements.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            Placement& place = shape.placements[i];
+            place.origin = move(place.origin);
+            for (Vec3f* axis : {&place.x_axis, &place.y_axis, &place.z_axis}) {
+                *axis = to_float(to_double(*axis) * move.scale);
+            }
+        }
+    });
+}
+
+void rebase(Hexahedra& shape, const Rebase& move) {
+    parallel_ranges(shape.corners.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            for (Vec3f& corner : shape.corners[i]) corner = move(corner);
+        }
+    });
+}
+
 /// The frame about `bounds`: a power of two as unit, so that a change of scale rounds nothing.
 Frame frame_about(const Bounds3d& bounds) {
     const double half_diagonal = length(bounds.extent()) * 0.5;
@@ -72,9 +104,11 @@ Frame frame_about(const Bounds3d& bounds) {
 
 }  // namespace
 
-std::size_t Object::primitive_count() const {
+std::size_t primitive_count(const Shape& shape) {
     if (const auto* spheres = std::get_if<Spheres>(&shape)) return spheres->spheres.size();
-    return std::get<Mesh>(shape).triangles.size();
+    if (const auto* mesh = std::get_if<Mesh>(&shape)) return mesh->triangles.size();
+    if (const auto* glyphs = std::get_if<Glyphs>(&shape)) return glyphs->placements.size();
+    return std::get<Hexahedra>(shape).corners.size();
 }
 
 Bounds3d Object::world_bounds() const {

@@ -7,6 +7,7 @@
 
 #include "base/bounds.h"
 #include "base/vec.h"
+#include "scene/glyphs.h"
 #include "scene/ids.h"
 #include "scene/material.h"
 #include "scene/mesh.h"
@@ -25,18 +26,23 @@ struct Frame {
     Vec3f from_world(Vec3d world) const { return to_float((world - origin) / unit); }
 };
 
-enum class ObjectKind : std::uint8_t { molecule, particles, mesh };
+enum class ObjectKind : std::uint8_t { molecule, particles, mesh, shape };
 
-/// One thing that was loaded or added: a molecule, a mesh, a particle set.
+using Shape = std::variant<Spheres, Mesh, Glyphs, Hexahedra>;
+
+/// Spheres, triangles, glyphs or hexahedra.
+std::size_t primitive_count(const Shape& shape);
+
+/// One thing that was loaded or added: a molecule, a mesh, a particle set, an exact shape.
 struct Object {
     std::string name;
     ObjectKind kind = ObjectKind::mesh;
     Frame frame{};  ///< of `shape`, until the object joins a scene
-    std::variant<Spheres, Mesh> shape;
+    Shape shape;
     Material material{};
     std::vector<std::string> part_names{};
 
-    std::size_t primitive_count() const;
+    std::size_t primitive_count() const { return ink::primitive_count(shape); }
     Bounds3d world_bounds() const;
 };
 

@@ -67,8 +67,10 @@ Shader::Shader(const Scene& scene, const Camera& camera, const ShadingSettings& 
     for (const Object& object : scene.objects()) {
         Surface surface;
         surface.color = srgb_decode(object.material.color);
-        if (const auto* spheres = std::get_if<Spheres>(&object.shape)) {
-            if (!spheres->colors.empty()) surface.primitive_colors = spheres->colors.data();
+        if (!std::holds_alternative<Mesh>(object.shape)) {
+            const auto& colors = std::visit(
+                [](const auto& s) -> auto& { return s.colors; }, object.shape);
+            if (!colors.empty()) surface.primitive_colors = colors.data();
         } else {
             const auto& mesh = std::get<Mesh>(object.shape);
             surface.triangles = mesh.triangles.data();
