@@ -180,17 +180,17 @@ void Camera::lay_plane(const Scene& scene, Size size) {
 
     const Vec3d ahead = eye_ - back_ * start_depth_;
     if (orthographic_) {
-        origin_ = to_float(ahead + to_corner);
-        origin_dx_ = to_float(step_x);
-        origin_dy_ = to_float(step_y);
-        dir_ = to_float(-back_);
+        field_.origin = to_float(ahead + to_corner);
+        field_.origin_dx = to_float(step_x);
+        field_.origin_dy = to_float(step_y);
+        field_.dir = to_float(-back_);
     } else {
-        origin_ = to_float(ahead + to_corner * start_depth_);
-        origin_dx_ = to_float(step_x * start_depth_);
-        origin_dy_ = to_float(step_y * start_depth_);
-        dir_ = to_float(to_corner - back_);
-        dir_dx_ = to_float(step_x);
-        dir_dy_ = to_float(step_y);
+        field_.origin = to_float(ahead + to_corner * start_depth_);
+        field_.origin_dx = to_float(step_x * start_depth_);
+        field_.origin_dy = to_float(step_y * start_depth_);
+        field_.dir = to_float(to_corner - back_);
+        field_.dir_dx = to_float(step_x);
+        field_.dir_dy = to_float(step_y);
     }
 
     constexpr float kMax = std::numeric_limits<float>::max();
@@ -211,11 +211,12 @@ void Camera::lay_plane(const Scene& scene, Size size) {
 }
 
 float Camera::least_footprint() const {
-    return length(orthographic_ ? origin_dx_ : dir_dx_ * static_cast<float>(start_depth_));
+    return length(orthographic_ ? field_.origin_dx
+                                : field_.dir_dx * static_cast<float>(start_depth_));
 }
 
 float Camera::distance_from_eye(Vec2f point, float t) const {
-    const Vec3f d = dir_ + dir_dx_ * point.x + dir_dy_ * point.y;
+    const Vec3f d = field_.dir + field_.dir_dx * point.x + field_.dir_dy * point.y;
     return t + static_cast<float>(start_depth_) * length(d);
 }
 

@@ -54,6 +54,14 @@ class Camera {
     bool orthographic() const { return orthographic_; }
     Vec3f eye() const { return to_float(eye_); }  ///< scene frame
 
+    /// Rays before their directions are normalised: the one through screen point (x, y) starts at
+    /// origin + x origin_dx + y origin_dy; directions likewise.
+    struct RayField {
+        Vec3f origin, origin_dx, origin_dy;
+        Vec3f dir, dir_dx, dir_dy;
+    };
+    const RayField& ray_field() const { return field_; }
+
     /// The part of the screen, in pixels, outside of which no ray can hit the scene.
     struct ScreenBox {
         float left, top, right, bottom;
@@ -75,21 +83,19 @@ class Camera {
     double half_height_ = 0.0;  ///< of the view: tan(fov / 2), or scene units
     double start_depth_ = 0.0;  ///< of the plane that rays start on, along -back
 
-    // origin = origin_ + x * origin_dx_ + y * origin_dy_, the direction likewise, then normalised
-    Vec3f origin_, origin_dx_, origin_dy_;
-    Vec3f dir_, dir_dx_, dir_dy_;
+    RayField field_;
     ScreenBox scene_box_{};
     Vec3d world_eye_, world_look_at_;
 };
 
 void Camera::make_rays(const Lanes<float>& x, const Lanes<float>& y, RayPacket& rays) const {
     for (int i = 0; i < kLanes; ++i) {
-        rays.origin_x[i] = origin_.x + x[i] * origin_dx_.x + y[i] * origin_dy_.x;
-        rays.origin_y[i] = origin_.y + x[i] * origin_dx_.y + y[i] * origin_dy_.y;
-        rays.origin_z[i] = origin_.z + x[i] * origin_dx_.z + y[i] * origin_dy_.z;
-        const float dx = dir_.x + x[i] * dir_dx_.x + y[i] * dir_dy_.x;
-        const float dy = dir_.y + x[i] * dir_dx_.y + y[i] * dir_dy_.y;
-        const float dz = dir_.z + x[i] * dir_dx_.z + y[i] * dir_dy_.z;
+        rays.origin_x[i] = field_.origin.x + x[i] * field_.origin_dx.x + y[i] * field_.origin_dy.x;
+        rays.origin_y[i] = field_.origin.y + x[i] * field_.origin_dx.y + y[i] * field_.origin_dy.y;
+        rays.origin_z[i] = field_.origin.z + x[i] * field_.origin_dx.z + y[i] * field_.origin_dy.z;
+        const float dx = field_.dir.x + x[i] * field_.dir_dx.x + y[i] * field_.dir_dy.x;
+        const float dy = field_.dir.y + x[i] * field_.dir_dx.y + y[i] * field_.dir_dy.y;
+        const float dz = field_.dir.z + x[i] * field_.dir_dx.z + y[i] * field_.dir_dy.z;
         const float scale = 1.0F / std::sqrt(dx * dx + dy * dy + dz * dz);
         rays.dir_x[i] = dx * scale;
         rays.dir_y[i] = dy * scale;

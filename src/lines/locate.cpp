@@ -33,20 +33,32 @@ float smoothstep(float from, float to, float x) {
     return s * s * (3.0F - 2.0F * s);
 }
 
+bool same_surface(const Sample& a, const Sample& b) { return a.id == b.id && a.ball == b.ball; }
+
 }  // namespace
 
 Locator::Locator(const Viewpoint& viewpoint, const LocateSettings& settings)
     : viewpoint_(viewpoint),
       settings_(settings),
-      least_turn_(2.0F * std::sin(0.5F * settings.crease_min_deg * kRadiansPerDegree)) {}
+      least_turn_(2.0F * std::sin(0.5F * settings.crease_min_deg * kRadiansPerDegree)) {
+    jump_shares_.push_back(1.0F);
+    for (int step = 0; step < settings.steps + settings.steep_steps; ++step) {
+        jump_shares_.push_back(jump_shares_.back() *
+                               (step < settings.steps ? settings.surviving_share : 1.0F));
+    }
+}
 
 void Locator::locate(const SampleGrid& grid, std::span<const SuspectEdge> edges,
-                     const SampleFunction& sample, std::vector<Crossing>& crossings) {
-    start(grid, edges);
-    jump_share_ = 1.0F;
-    for (int step = 0; step < settings_.steps; ++step) {
-        jump_share_ *= settings_.surviving_share;
-        halve(sample);
+                     const BallFunction& ball, const SampleFunction& sample,
+                     std::vector<Crossing>& crossings) {
+    start(grid, edges, ball);
+    for (;;) {
+        active_.clear();
+        for (std::size_t k = 0; k < intervals_.size(); ++k) {
+            if (intervals_[k].state == State::open) active_.push_back(k);
+        }
+        if (active_.empty()) break;
+        step(sample);
     }
     refine_steep(sample);
 
@@ -55,43 +67,108 @@ void Locator::locate(const SampleGrid& grid, std::span<const SuspectEdge> edges,
     for (const Interval& interval : intervals_) {
         if (classify(interval, crossing)) crossings.push_back(crossing);
     }
-    // Intervals that were split off came last.
-    std::ranges::stable_sort(crossings, [&](const Crossing& x, const Crossing& y) {
-        if (x.edge != y.edge) return x.edge < y.edge;
-        return edges[x.edge].down ? x.point.y < y.point.y : x.point.x < y.point.x;
-    });
 }
 
-void Locator::start(const SampleGrid& grid, std::span<const SuspectEdge> edges) {
+/// Intervals go by squares of the lattice, so that rays of a packet are close together.
+void Locator::start(const SampleGrid& grid, std::span<const SuspectEdge> edges,
+                    const BallFunction& ball) {
+    constexpr int kSquare = 8;
+    const int across = (grid.width + kSquare - 1) / kSquare;
+    const int down = (grid.height + kSquare - 1) / kSquare;
+    const auto square = [&](const SuspectEdge& edge) {
+        return static_cast<std::size_t>(edge.j / kSquare * across + edge.i / kSquare);
+    };
+    bins_.assign(static_cast<std::size_t>(across * down) + 1, 0);
+    for (const SuspectEdge& edge : edges) ++bins_[square(edge) + 1];
+    for (std::size_t k = 1; k < bins_.size(); ++k) bins_[k] += bins_[k - 1];
+    order_.resize(edges.size());
+    for (std::uint32_t k = 0; k < edges.size(); ++k) order_[bins_[square(edges[k])]++] = k;
+
     intervals_.clear();
-    for (std::uint32_t k = 0; k < edges.size(); ++k) {
+    intervals_.reserve(edges.size());
+    for (const std::uint32_t k : order_) {
         const SuspectEdge& edge = edges[k];
         const int i = edge.i + (edge.down ? 0 : 1);
         const int j = edge.j + (edge.down ? 1 : 0);
-        const Sample a = grid.sample(grid.index(edge.i, edge.j));
-        const Sample b = grid.sample(grid.index(i, j));
-        intervals_.push_back({grid.point(edge.i, edge.j), grid.point(i, j), a, b, edge.suspicion,
-                              true, k, depth_jump(a, b), turn(a, b)});
+        Interval& interval = intervals_.emplace_back();
+        interval.a = grid.point(edge.i, edge.j);
+        interval.b = grid.point(i, j);
+        interval.at_a = grid.sample(grid.index(edge.i, edge.j));
+        interval.at_b = grid.sample(grid.index(i, j));
+        interval.suspicion = edge.suspicion;
+        interval.edge = k;
+        if (ball) {
+            interval.at_a.ball = ball(grid.index(edge.i, edge.j));
+            interval.at_b.ball = ball(grid.index(i, j));
+            predict(interval);
+        }
+        if (interval.state == State::foreseen) continue;
+        interval.first_jump = depth_jump(interval.at_a, interval.at_b);
+        interval.first_turn = turn(interval.at_a, interval.at_b);
     }
 }
 
-void Locator::halve(const SampleFunction& sample) {
-    active_.clear();
-    for (std::size_t k = 0; k < intervals_.size(); ++k) {
-        if (!intervals_[k].smooth) active_.push_back(k);
+/// Computes the crossing if that can be done. If both ends saw one ball, there is none.
+void Locator::predict(Interval& interval) const {
+    const bool one_surface = same_surface(interval.at_a, interval.at_b);
+    if (one_surface && interval.at_a.ball) {
+        interval.state = State::smooth;
+        return;
     }
-    sample_middles(sample);
-    for (std::size_t n = 0; n < active_.size(); ++n) narrow(active_[n], points_[n], samples_[n]);
+    if (one_surface) return;
+    interval.prediction =
+        predict_crossing(viewpoint_, interval.a, interval.at_a, interval.b, interval.at_b);
+    if (!interval.prediction) return;
+    const Prediction& p = *interval.prediction;
+    // The check would repeat what the interval's end has seen.
+    const bool known =
+        (p.kind == Prediction::Kind::first_limb && p.at + settings_.check_offset >= 1.0F) ||
+        (p.kind == Prediction::Kind::second_limb && p.at <= settings_.check_offset);
+    if (known || p.squared_radius < settings_.least_checked * settings_.least_checked)
+        interval.state = State::foreseen;
 }
 
-/// Samples the middle of every active interval.
-void Locator::sample_middles(const SampleFunction& sample) {
+/// One more sample on every active interval.
+void Locator::step(const SampleFunction& sample) {
     points_.clear();
-    for (const std::size_t k : active_) {
-        points_.push_back((intervals_[k].a + intervals_[k].b) * 0.5F);
-    }
+    for (const std::size_t k : active_) points_.push_back(next_point(intervals_[k]));
     samples_.resize(points_.size());
     sample(points_, samples_);
+    for (std::size_t n = 0; n < active_.size(); ++n) {
+        if (intervals_[active_[n]].prediction) {
+            check(active_[n], points_[n], samples_[n]);
+        } else {
+            narrow(active_[n], points_[n], samples_[n]);
+        }
+    }
+}
+
+/// Where to look next: beside the predicted crossing, or in the middle.
+Vec2f Locator::next_point(const Interval& interval) const {
+    if (!interval.prediction) return (interval.a + interval.b) * 0.5F;
+    float at = interval.prediction->at;
+    if (interval.prediction->kind == Prediction::Kind::first_limb) at += settings_.check_offset;
+    if (interval.prediction->kind == Prediction::Kind::second_limb) at -= settings_.check_offset;
+    return interval.a + (interval.b - interval.a) * at;
+}
+
+/// Keeps a prediction that the sample beside it confirms; else what it saw tells where to go on.
+void Locator::check(std::size_t k, Vec2f point, const Sample& sample) {
+    Interval& interval = intervals_[k];
+    const Prediction::Kind kind = interval.prediction->kind;
+    const bool as_first = same_surface(sample, interval.at_a);
+    const bool as_second = same_surface(sample, interval.at_b);
+    const bool confirmed = kind == Prediction::Kind::first_limb    ? as_second
+                           : kind == Prediction::Kind::second_limb ? as_first
+                                                                   : as_first || as_second;
+    if (confirmed && kind != Prediction::Kind::gap) {
+        interval.state = State::foreseen;
+        return;
+    }
+    interval.prediction.reset();
+    if (!as_first && !as_second) return split(k, point, sample);
+    (as_second ? interval.b : interval.a) = point;
+    (as_second ? interval.at_b : interval.at_a) = sample;
 }
 
 void Locator::narrow(std::size_t k, Vec2f point, const Sample& sample) {
@@ -110,14 +187,22 @@ void Locator::narrow(std::size_t k, Vec2f point, const Sample& sample) {
     }
     (keep_first_half ? interval.b : interval.a) = point;
     (keep_first_half ? interval.at_b : interval.at_a) = sample;
+    ++interval.steps;
     // Neither grows again as the interval shrinks.
-    interval.smooth =
-        interval.suspicion != Suspicion::id && !has_jump(interval) && !has_crease(interval);
+    if (interval.suspicion != Suspicion::id && !has_jump(interval) && !has_crease(interval)) {
+        interval.state = State::smooth;
+    } else if (interval.steps == settings_.steps) {
+        interval.state = State::located;
+    }
+}
+
+float Locator::jump_share(const Interval& interval) const {
+    return jump_shares_[static_cast<std::size_t>(interval.steps)];
 }
 
 bool Locator::has_jump(const Interval& interval) const {
     return interval.suspicion == Suspicion::depth &&
-           depth_jump(interval.at_a, interval.at_b) > jump_share_ * interval.first_jump;
+           depth_jump(interval.at_a, interval.at_b) > jump_share(interval) * interval.first_jump;
 }
 
 /// The two sides of a sharp corner do not fit one smooth surface either: what was suspected to be a
@@ -125,19 +210,25 @@ bool Locator::has_jump(const Interval& interval) const {
 bool Locator::has_crease(const Interval& interval) const {
     const float left = turn(interval.at_a, interval.at_b);
     return left > least_turn_ &&
-           left > std::max(jump_share_, settings_.surviving_turn) * interval.first_turn;
+           left > std::max(jump_share(interval), settings_.surviving_turn) * interval.first_turn;
 }
 
 /// Another geometry lies between: its two outlines are what is seen.
 void Locator::split(std::size_t k, Vec2f point, const Sample& sample) {
-    intervals_[k].suspicion = Suspicion::id;
-    Interval second = intervals_[k];
-    intervals_[k].b = second.a = point;
-    intervals_[k].at_b = second.at_a = sample;
+    Interval& first = intervals_[k];
+    first.suspicion = Suspicion::id;
+    ++first.steps;
+    Interval second = first;
+    first.b = second.a = point;
+    first.at_b = second.at_a = sample;
+    if (first.steps == settings_.steps) first.state = second.state = State::located;
     // Once is enough: two lines within one lattice spacing are all that can be told apart.
-    const bool may_split = intervals_[k].may_split;
-    intervals_[k].may_split = second.may_split = false;
-    if (may_split) intervals_.push_back(second);
+    const bool may_split = first.may_split;
+    first.may_split = second.may_split = false;
+    if (first.state == State::open) predict(first);
+    if (!may_split) return;
+    if (second.state == State::open) predict(second);
+    intervals_.push_back(second);
 }
 
 /// Tangent of the angle between a surface and the plane across the ray that hit it.
@@ -177,8 +268,8 @@ void Locator::refine_steep(const SampleFunction& sample) {
     active_.clear();
     for (std::size_t k = 0; k < intervals_.size(); ++k) {
         Interval& interval = intervals_[k];
-        if (interval.smooth || interval.at_a.id == kBackground || interval.at_b.id == kBackground ||
-            !surfaces_meet(interval)) {
+        if (interval.state != State::located || interval.at_a.id == kBackground ||
+            interval.at_b.id == kBackground || !surfaces_meet(interval)) {
             continue;
         }
         const float steeper = steeper_slope(interval);
@@ -188,42 +279,71 @@ void Locator::refine_steep(const SampleFunction& sample) {
         active_.push_back(k);
     }
     for (int step = 0; step < settings_.steep_steps && !active_.empty(); ++step) {
-        sample_middles(sample);
-        for (std::size_t n = 0; n < active_.size(); ++n) {
-            intervals_[active_[n]].may_split = false;
-            narrow(active_[n], points_[n], samples_[n]);
+        for (const std::size_t k : active_) {
+            intervals_[k].may_split = false;
+            intervals_[k].prediction.reset();
         }
+        Locator::step(sample);
     }
 }
 
 bool Locator::classify(const Interval& interval, Crossing& crossing) const {
+    if (interval.state == State::smooth) return false;
     const Sample& a = interval.at_a;
     const Sample& b = interval.at_b;
-    crossing.point = (interval.a + interval.b) * 0.5F;
     crossing.edge = interval.edge;
     crossing.first = a.id;
     crossing.second = b.id;
+    crossing.strength = 1.0F;
+    if (interval.state == State::foreseen) return classify_foreseen(interval, crossing);
+
+    crossing.point = (interval.a + interval.b) * 0.5F;
     const bool a_in_front = b.id == kBackground || (a.id != kBackground && a.t <= b.t);
     crossing.nearer = a_in_front ? a.id : b.id;
     crossing.t = a_in_front ? a.t : b.t;
-    crossing.strength = 1.0F;
     if (interval.suspicion == Suspicion::id) {
         const bool both = a.id != kBackground && b.id != kBackground;
         crossing.type =
             both && surfaces_meet(interval) ? LineType::intersection : LineType::silhouette;
         return a.id != b.id;
     }
-    if (interval.smooth) return false;
     if (!surfaces_meet(interval)) {
         crossing.type = LineType::self_occlusion;
         return true;
     }
     if (!has_crease(interval)) return false;
-    const float angle = 2.0F * std::asin(std::min(0.5F * turn(a, b), 1.0F));
     crossing.type = LineType::crease;
-    crossing.strength = smoothstep(settings_.crease_min_deg * kRadiansPerDegree,
-                                   settings_.crease_full_deg * kRadiansPerDegree, angle);
+    crossing.strength = crease_strength(2.0F * std::asin(std::min(0.5F * turn(a, b), 1.0F)));
     return true;
+}
+
+/// What a prediction says needs no measuring: a limb hides, a seam joins.
+bool Locator::classify_foreseen(const Interval& interval, Crossing& crossing) const {
+    using Kind = Prediction::Kind;
+    const Prediction& p = *interval.prediction;
+    const Sample& a = interval.at_a;
+    const Sample& b = interval.at_b;
+    const bool a_in_front =
+        p.kind == Kind::first_limb || (p.kind != Kind::second_limb && a.t <= b.t);
+    crossing.point = interval.a + (interval.b - interval.a) * p.at;
+    crossing.nearer = a_in_front ? a.id : b.id;
+    crossing.t = p.t;
+    const bool one_id = a.id == b.id;
+    if (p.kind != Kind::seam) {
+        crossing.type = one_id ? LineType::self_occlusion : LineType::silhouette;
+        return true;
+    }
+    crossing.type = one_id ? LineType::crease : LineType::intersection;
+    if (one_id) {
+        crossing.strength =
+            crease_strength(seam_angle(viewpoint_, crossing.point, p.t, a.ball, b.ball));
+    }
+    return crossing.strength > 0.0F;
+}
+
+float Locator::crease_strength(float angle) const {
+    return smoothstep(settings_.crease_min_deg * kRadiansPerDegree,
+                      settings_.crease_full_deg * kRadiansPerDegree, angle);
 }
 
 }  // namespace ink

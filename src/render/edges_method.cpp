@@ -19,11 +19,16 @@ InkSettings ink_settings(const Settings& settings, Color color) {
     return ink;
 }
 
+Viewpoint::Affine affine(Vec3f at_zero, Vec3f dx, Vec3f dy) {
+    return {to_double(at_zero), to_double(dx), to_double(dy)};
+}
+
 }  // namespace
 
 Edges::Edges(const Pipeline& shared)
     : pipeline(shared),
       q(shared.settings.lattice_points()),
+      surfaces(shared.scene),
       draw_lines(shared.settings.draws_lines()),
       smooth_shading(shared.settings.smoothing().kind == AntiAliasing::Kind::edges),
       wanted(shared.settings.lines),
@@ -34,7 +39,10 @@ Edges::Edges(const Pipeline& shared)
     detect.normals = smooth_shading || wanted.has(LineType::crease);
     const Camera& camera = shared.camera;
     detect.least_jump = 0.2F * camera.least_footprint() / static_cast<float>(q);
-    viewpoint = {camera.eye(), -camera.back(), camera.orthographic()};
+    const Camera::RayField& rays = camera.ray_field();
+    viewpoint = {camera.eye(), -camera.back(), camera.orthographic(),
+                 affine(rays.origin, rays.origin_dx, rays.origin_dy),
+                 affine(rays.dir, rays.dir_dx, rays.dir_dy)};
     const int reach = static_cast<int>(std::ceil(draw_lines ? ink.reach() : 1.0F)) + 1;
     margin = (reach + kBlockSide - 1) / kBlockSide * kBlockSide;
     const Size size = shared.settings.size;

@@ -11,6 +11,7 @@
 #include "render/pipeline.h"
 #include "render/tiles.h"
 #include "sampling/samples.h"
+#include "sampling/surfaces.h"
 
 namespace ink {
 
@@ -26,6 +27,7 @@ struct Edges {
 
     const Pipeline& pipeline;
     int q;  ///< lattice points along a pixel's side
+    Surfaces surfaces;
     bool draw_lines;
     bool smooth_shading;  ///< blend the colours of pixels that a line cuts
     DetectSettings detect;

@@ -185,7 +185,8 @@ std::vector<ColoredSegment> LineFinder::find_lines() {
     const Timer timer(stats_.lines_ms);
     if (!edges_.draw_lines && !edges_.smooth_shading) return {};
     detect(grid_, edges_.detect, suspects_);
-    locator_.locate(grid_, suspects_, sample_, crossings_);
+    std::erase_if(suspects_, [&](const SuspectEdge& edge) { return is_smooth(edge); });
+    locator_.locate(grid_, suspects_, ball_, sample_, crossings_);
     connector_.connect(grid_, suspects_, crossings_, segments_);
     stats_.crossings += crossings_.size();
 
@@ -199,6 +200,27 @@ std::vector<ColoredSegment> LineFinder::find_lines() {
         found.push_back({segment, color(segment.left_sample), color(segment.right_sample)});
     }
     return found;
+}
+
+/// Whether the scene rules out a line that the samples alone let suspect.
+bool LineFinder::is_smooth(const SuspectEdge& edge) const {
+    if (edge.suspicion == Suspicion::id) return false;
+    const LatticeHit a = hit_at(edge.i, edge.j);
+    const LatticeHit b = edge.down ? hit_at(edge.i, edge.j + 1) : hit_at(edge.i + 1, edge.j);
+    return edges_.surfaces.smooth_between(*a.hits, a.lane, *b.hits, b.lane);
+}
+
+/// What a point of the grid hit; it must not be background.
+LineFinder::LatticeHit LineFinder::hit_at(int i, int j) const {
+    return {&hits_[block_index(i / kBlockSide, j / kBlockSide)],
+            j % kBlockSide * kBlockSide + i % kBlockSide};
+}
+
+Ball LineFinder::ball_at(std::size_t point) const {
+    if (grid_.id[point] == kBackground) return {};
+    const auto width = static_cast<std::size_t>(grid_.width);
+    const LatticeHit hit = hit_at(static_cast<int>(point % width), static_cast<int>(point / width));
+    return edges_.surfaces.ball(*hit.hits, hit.lane);
 }
 
 /// More samples, for the bisection.
@@ -219,7 +241,8 @@ void LineFinder::sample(std::span<const Vec2f> points, std::span<Sample> out) {
             out[first + n] = {ids[i],
                               {values[0][i], values[1][i], values[2][i]},
                               {values[3][i], values[4][i], values[5][i]},
-                              values[6][i]};
+                              values[6][i],
+                              edges_.surfaces.ball(point_hits_[k], i)};
         }
     }
 }

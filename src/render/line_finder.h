@@ -28,7 +28,8 @@ class LineFinder {
           locator_(edges.viewpoint, edges.locate),
           sample_([this](std::span<const Vec2f> points, std::span<Sample> out) {
               sample(points, out);
-          }) {}
+          }),
+          ball_([this](std::size_t point) { return ball_at(point); }) {}
 
     /// Design: trace the lattice, detect, locate, connect. Shades the tile's pixels on the way.
     std::vector<ColoredSegment> search(const Tile& tile) {
@@ -51,6 +52,13 @@ class LineFinder {
     void put_aovs(Block block);
     std::vector<ColoredSegment> find_lines();
     void sample(std::span<const Vec2f> points, std::span<Sample> out);
+    struct LatticeHit {
+        const HitPacket* hits;
+        int lane;
+    };
+    LatticeHit hit_at(int i, int j) const;
+    bool is_smooth(const SuspectEdge& edge) const;
+    Ball ball_at(std::size_t point) const;
     std::uint32_t block_index(int i, int j) const;
     std::array<float, 4> color_at(int i, int j) const;
 
@@ -61,6 +69,7 @@ class LineFinder {
     Sampler pixel_sampler_;
     Locator locator_;
     SampleFunction sample_;
+    BallFunction ball_;
     Connector connector_;
     SampleGrid grid_;
     int blocks_across_ = 0;

@@ -19,8 +19,10 @@ namespace ink {
 
 /// What every method works with.
 struct Pipeline {
-    Pipeline(const Scene& scene, const Tracer& scene_tracer, const Settings& all, Film& target)
-        : tracer(scene_tracer),
+    Pipeline(const Scene& all_objects, const Tracer& scene_tracer, const Settings& all,
+             Film& target)
+        : scene(all_objects),
+          tracer(scene_tracer),
           settings(all),
           camera(scene, all.view, all.size),
           shader(scene, camera, all.shading),
@@ -29,6 +31,7 @@ struct Pipeline {
         if (!all.aovs.empty()) aovs.emplace(scene, camera, all.aovs, target);
     }
 
+    const Scene& scene;
     const Tracer& tracer;
     const Settings& settings;
     Camera camera;

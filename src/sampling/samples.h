@@ -10,25 +10,48 @@
 
 namespace ink {
 
+/// The sphere that a hit lies on, where it does: its outline and its seams with others can then be
+/// computed instead of searched.
+struct Ball {
+    Vec3f centre;         ///< scene frame
+    float radius = 0.0F;  ///< 0: not a sphere
+
+    explicit operator bool() const { return radius > 0.0F; }
+    friend constexpr bool operator==(const Ball& a, const Ball& b) = default;
+};
+
 /// What one ray saw, as far as lines depend on it.
 struct Sample {
     GeometryId id = kBackground;
     Vec3f position;  ///< scene frame; unset on a miss
     Vec3f normal;    ///< shading normal, unit, faces the viewer; unset on a miss
     float t = 0.0F;  ///< distance along the ray from the plane on which all rays start, scene units
+    Ball ball{};
 };
 
-/// From where rays come, for telling how steeply a surface is seen.
+/// From where rays come.
 struct Viewpoint {
     Vec3f eye;  ///< perspective: where all rays meet, scene frame
     Vec3f dir;  ///< orthographic: direction of all rays, unit
     bool parallel = false;
+    /// The ray through screen point p (pixels) starts at origin(p) and runs along direction(p), not
+    /// of unit length; both are affine in p.
+    struct Affine {
+        Vec3d at_zero, dx, dy;
+        Vec3d operator()(Vec2f p) const {
+            return at_zero + dx * static_cast<double>(p.x) + dy * static_cast<double>(p.y);
+        }
+    };
+    Affine origin, direction;
 
     Vec3f ray_direction(Vec3f at) const { return parallel ? dir : normalize(at - eye); }
 };
 
 /// Asks for samples at points of the screen (pixels): as many out as in.
 using SampleFunction = std::function<void(std::span<const Vec2f> points, std::span<Sample> out)>;
+
+/// Asks for the ball that a point of a grid saw, by its index.
+using BallFunction = std::function<Ball(std::size_t point)>;
 
 /// Samples at the points of a regular lattice of q x q a pixel, plane by plane. Point (i, j) of the
 /// grid is lattice point (x0 + i, y0 + j), at ((x0 + i + 1/2) / q, (y0 + j + 1/2) / q) on screen.
@@ -58,6 +81,7 @@ struct SampleGrid {
         return {(static_cast<float>(x0 + i) + 0.5F) * spacing,
                 (static_cast<float>(y0 + j) + 0.5F) * spacing};
     }
+    /// Without the ball, which the grid does not keep.
     Sample sample(std::size_t k) const {
         return {id[k], {px[k], py[k], pz[k]}, {nx[k], ny[k], nz[k]}, t[k]};
     }
