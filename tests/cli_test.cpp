@@ -481,8 +481,8 @@ TEST_F(CommandLine, InfoTellsWhatIsInAFile) {
     folder_.write("b.stl", kStl);
     const Outcome outcome = run({"info", "a.xyz", "b.stl"});
     expect_done(outcome);
-    expect_says(outcome.out, {"a.xyz", "XYZ (molecule)", "atoms     2", "angstrom", "b.stl",
-                              "STL (mesh)", "triangles 2", "0 to 3"});
+    expect_says(outcome.out, {"a.xyz", "XYZ (molecule)", "atoms       2", "angstrom", "b.stl",
+                              "STL (mesh)", "triangles   2", "0 to 3"});
     EXPECT_EQ(outcome.err, "");
 }
 

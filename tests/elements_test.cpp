@@ -6,7 +6,7 @@
 #include <string>
 
 #include "base/text.h"
-#include "scene/molecule.h"
+#include "scene/representation.h"
 
 namespace ink {
 namespace {
@@ -68,6 +68,20 @@ TEST(Elements, HaveThePublishedRadiiOfTheMainGroup) {
     EXPECT_FLOAT_EQ(radius("Fr"), 3.48f);
 }
 
+TEST(Elements, HaveThePublishedRadiiOfOtherTables) {
+    const auto of = [](RadiiTable table, std::string_view symbol) {
+        return atom_radius(table, atomic_number(symbol).value());
+    };
+    EXPECT_FLOAT_EQ(of(RadiiTable::bondi, "H"), 1.20F);
+    EXPECT_FLOAT_EQ(of(RadiiTable::bondi, "C"), 1.70F);
+    EXPECT_FLOAT_EQ(of(RadiiTable::bondi, "Hg"), 1.55F);
+    EXPECT_FLOAT_EQ(of(RadiiTable::covalent, "C"), 0.76F);
+    EXPECT_FLOAT_EQ(of(RadiiTable::covalent, "Fe"), 1.32F);
+    EXPECT_FLOAT_EQ(of(RadiiTable::covalent, "Au"), 1.36F);
+    EXPECT_FLOAT_EQ(of(RadiiTable::covalent, "Cm"), 1.69F);
+    EXPECT_FLOAT_EQ(of(RadiiTable::covalent, "Og"), 1.69F);
+}
+
 TEST(Elements, BeyondTheTableAreUnknownAndPink) {
     EXPECT_EQ(element(200).symbol, element(0).symbol);
     EXPECT_EQ(element(0).color, (Rgb8{255, 20, 147}));
@@ -83,7 +97,7 @@ Molecule carbon_monoxide_far_away() {
 }
 
 TEST(SpaceFilling, KeepsBondLengthsFarFromTheOrigin) {
-    const Object object = space_filling(carbon_monoxide_far_away());
+    const Object object = represent(carbon_monoxide_far_away(), {}).at(0);
     const auto& spheres = std::get<Spheres>(object.shape);
     ASSERT_EQ(spheres.spheres.size(), 2u);
     EXPECT_EQ(object.frame.origin, (Vec3d{1e9, 0, 0}));
@@ -93,7 +107,7 @@ TEST(SpaceFilling, KeepsBondLengthsFarFromTheOrigin) {
 }
 
 TEST(SpaceFilling, HasNoPartsWithoutResidues) {
-    const Object object = space_filling(carbon_monoxide_far_away());
+    const Object object = represent(carbon_monoxide_far_away(), {}).at(0);
     EXPECT_TRUE(object.part_names.empty());
     EXPECT_TRUE(std::get<Spheres>(object.shape).parts.empty());
 }
@@ -103,7 +117,7 @@ TEST(SpaceFilling, MakesChainsItsParts) {
     molecule.chains = {"A", "B"};
     molecule.residue_table = {{"CMO", 1, 1}, {"CMO", 2, 0}};
     molecule.residues = {0, 1};
-    const Object object = space_filling(molecule);
+    const Object object = represent(molecule, {}).at(0);
     EXPECT_EQ(object.part_names, molecule.chains);
     EXPECT_EQ(std::get<Spheres>(object.shape).parts, (std::vector<std::uint32_t>{1, 0}));
 }

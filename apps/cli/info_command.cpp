@@ -7,6 +7,7 @@
 
 #include "commands.h"
 #include "inktrace/inktrace.h"
+#include "settings_flags.h"
 
 namespace inktrace::cli {
 
@@ -15,22 +16,29 @@ namespace {
 struct InfoArguments {
     std::vector<std::string> inputs;
     bool json = false;
-    int frame = 0;
+    Settings settings;
 };
 
 nlohmann::ordered_json to_json(const FileInfo& info) {
     nlohmann::ordered_json counts = nlohmann::ordered_json::object();
     for (const auto& [what, count] : info.counts) counts[what] = count;
+    auto fields = nlohmann::ordered_json::array();
+    for (const FieldInfo& field : info.fields) {
+        fields.push_back({{"name", field.name},
+                          {"components", field.components},
+                          {"least", field.least},
+                          {"most", field.most}});
+    }
     return {{"file", info.path.string()}, {"format", info.format},
             {"kind", info.kind},          {"frames", info.frames},
             {"counts", counts},           {"lower", info.lower},
             {"upper", info.upper},        {"length_unit", info.length_unit},
-            {"warnings", info.warnings}};
+            {"fields", fields},           {"warnings", info.warnings}};
 }
 
 void print_text(const FileInfo& info) {
     const auto line = [](std::string_view name, const std::string& value) {
-        fmt::print("  {:<10}{}\n", name, value);
+        fmt::print("  {:<12}{}\n", name, value);
     };
     fmt::print("{}\n", info.path.string());
     line("format", fmt::format("{} ({})", info.format, info.kind));
@@ -41,6 +49,12 @@ void print_text(const FileInfo& info) {
              fmt::format("{}  {:.6g} to {:.6g}{}{}", "xyz"[axis], info.lower[axis],
                          info.upper[axis], info.length_unit.empty() ? "" : " ", info.length_unit));
     }
+    for (const FieldInfo& field : info.fields) {
+        const std::string width =
+            field.components == 1 ? std::string() : fmt::format(" ({})", field.components);
+        line("field",
+             fmt::format("{}{}  {:.6g} to {:.6g}", field.name, width, field.least, field.most));
+    }
     for (const std::string& warning : info.warnings) line("warning", warning);
 }
 
@@ -48,7 +62,7 @@ void run(const InfoArguments& arguments) {
     auto list = nlohmann::ordered_json::array();
     for (const std::string& input : arguments.inputs) {
         Scene scene;
-        const FileInfo info = scene.load(input, arguments.frame);
+        const FileInfo info = scene.load(input, arguments.settings);
         if (arguments.json) {
             list.push_back(to_json(info));
         } else {
@@ -68,10 +82,7 @@ void add_info_command(CLI::App& app) {
     const auto arguments = std::make_shared<InfoArguments>();
     command->add_option("INPUT", arguments->inputs, "Files to look into")->required();
     command->add_flag("--json", arguments->json, "For machines");
-    command
-        ->add_option("--frame", arguments->frame, "Frame to look at of a file that has several [0]")
-        ->type_name("K")
-        ->check(CLI::Range(0, 1 << 30).description(""));
+    add_setting_flags(*command, arguments->settings, "Input");
     command->callback([arguments] { run(*arguments); });
 }
 

@@ -96,9 +96,8 @@ void write_stats(const std::filesystem::path& file, const nlohmann::ordered_json
 
 Scene load(const RenderArguments& arguments) {
     Scene scene;
-    const int frame = std::stoi(arguments.settings.get("frame"));
     for (const std::string& input : arguments.inputs) {
-        const FileInfo info = scene.load(input, frame);
+        const FileInfo info = scene.load(input, arguments.settings);
         for (const std::string& warning : info.warnings) {
             say(fmt::format("{}: warning: {}\n", input, warning));
         }

@@ -3,11 +3,13 @@
 #include <fmt/format.h>
 
 #include <string>
+#include <string_view>
 
 namespace inktrace::cli {
 
-void add_setting_flags(CLI::App& command, Settings& settings) {
+void add_setting_flags(CLI::App& command, Settings& settings, std::string_view topic) {
     for (const SettingInfo& info : all_settings()) {
+        if (!topic.empty() && info.topic != topic) continue;
         const std::string help = info.default_value.empty()
                                      ? info.help
                                      : fmt::format("{} [{}]", info.help, info.default_value);

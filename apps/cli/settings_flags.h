@@ -6,7 +6,7 @@
 
 namespace inktrace::cli {
 
-/// Adds a flag for every setting, in groups by topic; given ones go into `settings`.
-void add_setting_flags(CLI::App& command, Settings& settings);
+/// Adds a flag for every setting of one topic, or of all, in groups; given ones go into `settings`.
+void add_setting_flags(CLI::App& command, Settings& settings, std::string_view topic = {});
 
 }  // namespace inktrace::cli

@@ -11,7 +11,17 @@
 #include <utility>
 #include <vector>
 
+#include "inktrace/settings.h"
+
 namespace inktrace {
+
+/// A quantity that atoms or particles carry, to colour by.
+struct FieldInfo {
+    std::string name;
+    std::size_t components = 1;
+    double least = 0.0;  ///< of all components; greater than `most` where no value is finite
+    double most = 0.0;
+};
 
 /// What a file held.
 struct FileInfo {
@@ -23,6 +33,7 @@ struct FileInfo {
     std::vector<std::pair<std::string, std::uint64_t>> counts;  ///< ("atoms", 327), ...
     std::array<double, 3> lower{};  ///< bounds of what is drawn, in the file's units
     std::array<double, 3> upper{};
+    std::vector<FieldInfo> fields;      ///< what atoms or particles carry
     std::vector<std::string> warnings;  ///< what was left out or guessed
 };
 
@@ -37,6 +48,9 @@ class Scene {
     /// Adds what a file holds; the format is told from the extension. `frame` counts from 0.
     /// Throws Error (input).
     FileInfo load(const std::filesystem::path& file, int frame = 0);
+    /// The same, by settings of topic "Input": frame, selection, colours and so on. Throws Error
+    /// (input) also where they name what the file does not have.
+    FileInfo load(const std::filesystem::path& file, const Settings& settings);
 
     /// Adds spheres: x, y, z, radius of each, and either no colours or r, g, b (0 to 255, sRGB) of
     /// each. Values must be finite and radii positive, else Error (input).

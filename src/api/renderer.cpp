@@ -52,7 +52,8 @@ ink::Metadata metadata(const Settings& settings) {
     std::string flags;
     for (const auto& [name, value] : settings.changed()) {
         if (ink::find_setting(name).topic == "Run") continue;
-        flags += (flags.empty() ? "--" : " --") + name + " " + value;
+        const bool quoted = value.find(' ') != std::string::npos;
+        flags += (flags.empty() ? "--" : " --") + name + " " + (quoted ? "'" + value + "'" : value);
     }
     ink::Metadata entries{{"Software", std::string("Inktrace ") + version()}};
     if (!flags.empty()) entries.emplace_back("Settings", flags);

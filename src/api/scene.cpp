@@ -105,6 +105,25 @@ ink::Object make_mesh(std::string_view name, std::span<const float> vertices,
             .material = {.color = {color[0], color[1], color[2]}}};
 }
 
+FileInfo describe(const std::filesystem::path& file, const ink::FileContents& contents) {
+    ink::Bounds3d bounds;
+    for (const ink::Object& object : contents.objects) bounds.add(object.world_bounds());
+    FileInfo info{.path = file,
+                  .format = contents.format,
+                  .kind = kind_name(contents.objects.front().kind),
+                  .length_unit = contents.length_unit,
+                  .frames = contents.frames,
+                  .counts = contents.counts,
+                  .lower = to_array(bounds.lower),
+                  .upper = to_array(bounds.upper),
+                  .fields = {},
+                  .warnings = contents.warnings};
+    for (const ink::FieldSummary& field : contents.fields) {
+        info.fields.push_back({field.name, field.components, field.least, field.most});
+    }
+    return info;
+}
+
 }  // namespace
 
 Scene::Scene() : impl_(std::make_unique<Impl>()) {}
@@ -113,19 +132,15 @@ Scene& Scene::operator=(Scene&&) noexcept = default;
 Scene::~Scene() = default;
 
 FileInfo Scene::load(const std::filesystem::path& file, int frame) {
+    return load(file, Settings().set("frame", std::to_string(frame)));
+}
+
+FileInfo Scene::load(const std::filesystem::path& file, const Settings& settings) {
     return ink::guard([&] {
-        ink::FileContents contents = ink::read_file(file, {.frame = frame});
-        ink::Bounds3d bounds;
-        for (const ink::Object& object : contents.objects) bounds.add(object.world_bounds());
-        FileInfo info{.path = file,
-                      .format = contents.format,
-                      .kind = kind_name(contents.objects.front().kind),
-                      .length_unit = contents.length_unit,
-                      .frames = contents.frames,
-                      .counts = contents.counts,
-                      .lower = to_array(bounds.lower),
-                      .upper = to_array(bounds.upper),
-                      .warnings = contents.warnings};
+        const ink::Settings& inner = settings.impl().settings;
+        ink::FileContents contents =
+            ink::read_file(file, {.frame = inner.frame, .data = inner.data, .summarize = true});
+        FileInfo info = describe(file, contents);
         std::ranges::move(contents.objects, std::back_inserter(impl_->objects));
         return info;
     });

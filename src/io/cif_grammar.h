@@ -8,17 +8,19 @@
 // C++17: see CMakeLists.txt.
 namespace ink {
 
-/// The loops of a CIF file as they go by. The views stay valid as long as the text.
-class CifLoops {
+/// What a CIF file says, as it goes by. The views stay valid as long as the text. Values are as
+/// they are written, with their quotes; lines count from 1.
+class CifVisitor {
   public:
-    CifLoops() = default;
-    CifLoops(const CifLoops&) = delete;
-    CifLoops& operator=(const CifLoops&) = delete;
-    virtual ~CifLoops() = default;
+    CifVisitor() = default;
+    CifVisitor(const CifVisitor&) = delete;
+    CifVisitor& operator=(const CifVisitor&) = delete;
+    virtual ~CifVisitor() = default;
 
+    virtual void begin_block() = 0;
+    virtual void add_item(std::string_view tag, std::string_view value, std::size_t line) = 0;
     virtual void begin_loop() = 0;
     virtual void add_tag(std::string_view tag) = 0;
-    /// `value` as it is written, with its quotes; `line` counts from 1.
     virtual void add_value(std::string_view value, std::size_t line) = 0;
     virtual void end_loop() = 0;
 };
@@ -29,7 +31,8 @@ struct CifSyntaxError : std::runtime_error {
     std::size_t line;
 };
 
-/// Walks over a whole CIF text by gemmi's grammar. Throws CifSyntaxError, and what `loops` throws.
-void walk_cif(std::string_view text, CifLoops& loops);
+/// Walks over a whole CIF text by gemmi's grammar. Throws CifSyntaxError, and what `visitor`
+/// throws.
+void walk_cif(std::string_view text, CifVisitor& visitor);
 
 }  // namespace ink

@@ -5,12 +5,15 @@
 namespace ink {
 
 // One a file format family; reader.cpp lists them.
-Reader pdb_reader();    ///< gemmi_reader.cpp
-Reader mmcif_reader();  ///< gemmi_reader.cpp
-Reader sdf_reader();    ///< sdf_reader.cpp
-Reader xyz_reader();    ///< xyz_reader.cpp
-Reader obj_reader();    ///< obj_reader.cpp
-Reader ply_reader();    ///< ply_reader.cpp
-Reader stl_reader();    ///< stl_reader.cpp
+Reader pdb_reader();   ///< pdb_reader.cpp
+Reader cif_reader();   ///< cif_reader.cpp: mmCIF and small-molecule CIF
+Reader gro_reader();   ///< gro_reader.cpp
+Reader mol2_reader();  ///< mol2_reader.cpp
+Reader pqr_reader();   ///< pqr_reader.cpp
+Reader sdf_reader();   ///< sdf_reader.cpp
+Reader xyz_reader();   ///< xyz_reader.cpp
+Reader obj_reader();   ///< obj_reader.cpp
+Reader ply_reader();   ///< ply_reader.cpp
+Reader stl_reader();   ///< stl_reader.cpp
 
 }  // namespace ink

@@ -14,8 +14,9 @@
 namespace ink {
 
 std::span<const Reader> readers() {
-    static const std::array kReaders{pdb_reader(), mmcif_reader(), sdf_reader(), xyz_reader(),
-                                     obj_reader(), ply_reader(),   stl_reader()};
+    static const std::array kReaders{pdb_reader(), cif_reader(), sdf_reader(), mol2_reader(),
+                                     xyz_reader(), gro_reader(), pqr_reader(), obj_reader(),
+                                     ply_reader(), stl_reader()};
     return kReaders;
 }
 
@@ -51,6 +52,20 @@ void check_readable(const std::filesystem::path& file) {
     }
 }
 
+/// Errors about the options become errors about the file.
+FileContents read_with(const Reader& reader, const std::filesystem::path& file,
+                       const ReadOptions& options) {
+    try {
+        return reader.read(file, options);
+    } catch (const InputError&) {
+        throw;
+    } catch (const UsageError&) {
+        throw;
+    } catch (const Error& error) {
+        throw InputError(file, error.what());
+    }
+}
+
 }  // namespace
 
 FileContents read_file(const std::filesystem::path& file, const ReadOptions& options) {
@@ -58,7 +73,7 @@ FileContents read_file(const std::filesystem::path& file, const ReadOptions& opt
     const std::string extension = format_extension(file);
     for (const Reader& reader : readers()) {
         if (std::ranges::find(reader.extensions, extension) != reader.extensions.end()) {
-            return reader.read(file, options);
+            return read_with(reader, file, options);
         }
     }
     throw InputError(file, fmt::format("cannot tell the format from '{}'; expected one of {}",

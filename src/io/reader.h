@@ -8,12 +8,16 @@
 #include <utility>
 #include <vector>
 
+#include "scene/data_settings.h"
+#include "scene/field.h"
 #include "scene/scene.h"
 
 namespace ink {
 
 struct ReadOptions {
-    int frame = 0;  ///< of a file with several, from 0
+    int frame = 0;           ///< of a file with several, from 0
+    DataSettings data = {};  ///< what of it is drawn, and as what
+    bool summarize = false;  ///< look into fields that nothing draws, too
 };
 
 /// What a file held, ready for a scene.
@@ -23,6 +27,7 @@ struct FileContents {
     std::string length_unit;  ///< "angstrom"; empty where the format does not say
     int frames = 1;
     std::vector<std::pair<std::string, std::uint64_t>> counts;  ///< ("atoms", 327), in order
+    std::vector<FieldSummary> fields;   ///< what the entries carry; ranges only if asked for
     std::vector<std::string> warnings;  ///< what was left out or guessed, each a whole sentence
 };
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "base/error.h"
 #include "base/text.h"
@@ -15,12 +17,20 @@ namespace ink {
 
 namespace {
 
+/// A property of real or whole numbers in a frame of extended XYZ.
+struct Quantity {
+    std::string name;
+    std::size_t column = 0;  ///< of its first component
+    std::size_t components = 1;
+};
+
 /// Where a row keeps what is drawn. The default is plain XYZ: symbol x y z.
 struct Columns {
     std::optional<std::size_t> species = 0;
     std::size_t position = 1;  ///< of x; y and z follow
     std::size_t count = 4;     ///< that every row must have at least
-    bool has_radius = false;
+    std::optional<std::size_t> radius = std::nullopt;
+    std::vector<Quantity> quantities = {};
 };
 
 /// One frame as it lies in the text, not looked into yet.
@@ -90,7 +100,14 @@ Columns parse_columns(std::string_view text, FilePlace place) {
             columns.position = columns.count;
             has_position = true;
         }
-        columns.has_radius = columns.has_radius || name == "radius";
+        const std::string type = to_lower(fields[i + 1]);
+        const bool is_number = type == "r" || type == "i";
+        if (name == "radius" && is_number && width == 1) {
+            columns.radius = columns.count;
+        } else if (is_number && name != "pos" && name != "z") {
+            columns.quantities.push_back(
+                {std::string(fields[i]), columns.count, static_cast<std::size_t>(width)});
+        }
         columns.count += static_cast<std::size_t>(width);
     }
     check(has_position, "no entry 'pos'");
@@ -115,27 +132,63 @@ std::uint8_t parse_element(std::string_view text, FilePlace place) {
     return atomic_number(text.substr(0, letters)).value_or(0);
 }
 
-void add_row(MoleculeBuilder& molecule, const Columns& columns, std::string_view row,
-             FilePlace place) {
-    std::string_view species;
-    std::array<std::string_view, 3> position;
-    std::size_t column = 0;
-    for (; column < columns.count; ++column) {
-        const std::string_view word = take_word(row);
-        if (word.empty()) break;
-        if (column == columns.species) species = word;
-        const std::size_t axis = column - columns.position;
-        if (axis < 3) position[axis] = word;
-    }
-    if (column < columns.count) {
-        throw InputError(place.file, place.line,
-                         fmt::format("the row has {} of {} columns; does the frame have fewer "
-                                     "atoms than its count line says?",
-                                     column, columns.count));
-    }
-    const std::uint8_t element = columns.species ? parse_element(species, place) : std::uint8_t{0};
-    molecule.add_atom(parse_position(position[0], position[1], position[2], place), element);
+double parse_number(std::string_view word, std::string_view what, FilePlace place) {
+    const std::optional<double> number = parse_double(word);
+    if (number) return *number;
+    throw InputError(
+        place.file, place.line,
+        fmt::format("{} {} is not a number; repair or remove the atom", what, excerpt(word)));
 }
+
+class RowReader {
+  public:
+    RowReader(MoleculeBuilder& molecule, const Columns& columns)
+        : molecule_(molecule), columns_(columns) {
+        words_.resize(columns.count);
+        for (const Quantity& quantity : columns.quantities) {
+            molecule.add_field(quantity.name, quantity.components);
+        }
+    }
+
+    void add(std::string_view row, FilePlace place) {
+        for (std::size_t column = 0; column < columns_.count; ++column) {
+            words_[column] = take_word(row);
+            if (!words_[column].empty()) continue;
+            throw InputError(place.file, place.line,
+                             fmt::format("the row has {} of {} columns; does the frame have fewer "
+                                         "atoms than its count line says?",
+                                         column, columns_.count));
+        }
+        const std::uint8_t element =
+            columns_.species ? parse_element(words_[*columns_.species], place) : std::uint8_t{0};
+        const std::size_t x = columns_.position;
+        molecule_.add_atom(parse_position(words_[x], words_[x + 1], words_[x + 2], place), element);
+        add_radius(place);
+        for (std::size_t q = 0; q < columns_.quantities.size(); ++q) add_quantity(q, place);
+    }
+
+  private:
+    void add_radius(FilePlace place) {
+        if (!columns_.radius) return;
+        const double radius = parse_number(words_[*columns_.radius], "radius", place);
+        if (!(radius >= 0.0 && radius <= kLargestCoordinate)) {
+            throw InputError(place.file, place.line,
+                             "the radius is not a positive number; repair or remove the atom");
+        }
+        molecule_.set_radius(radius);
+    }
+    void add_quantity(std::size_t index, FilePlace place) {
+        const Quantity& quantity = columns_.quantities[index];
+        for (std::size_t c = 0; c < quantity.components; ++c) {
+            const std::string_view word = words_[quantity.column + c];
+            molecule_.set_value(index, parse_number(word, quantity.name, place), c);
+        }
+    }
+
+    MoleculeBuilder& molecule_;
+    const Columns& columns_;
+    std::vector<std::string_view> words_;
+};
 
 Columns frame_columns(const RawFrame& frame, const std::filesystem::path& file) {
     const std::optional<std::string_view> text = properties(frame.comment);
@@ -145,9 +198,10 @@ Columns frame_columns(const RawFrame& frame, const std::filesystem::path& file) 
 void add_atoms(MoleculeBuilder& molecule, const RawFrame& frame, const Columns& columns,
                const std::filesystem::path& file) {
     molecule.reserve(frame.atoms);
+    RowReader reader(molecule, columns);
     LineCursor rows(frame.rows);
     while (rows.next()) {
-        add_row(molecule, columns, rows.line(), {file, frame.count_line + 1 + rows.number()});
+        reader.add(rows.line(), {file, frame.count_line + 1 + rows.number()});
     }
 }
 
@@ -192,15 +246,8 @@ FileContents read_xyz(const std::filesystem::path& file, const ReadOptions& opti
     MoleculeBuilder molecule;
     const Columns columns = frame_columns(frames.wanted, file);
     add_atoms(molecule, frames.wanted, columns, file);
-    FileContents contents = std::move(molecule).finish(file, "XYZ", frames.count);
-    if (columns.has_radius) {
-        contents.warnings.emplace_back(
-            "The column 'radius' is not used: atoms are drawn with their van der Waals radius.");
-    }
-    if (frames.last_is_cut) {
-        contents.warnings.emplace_back("The last frame is cut short and was left out.");
-    }
-    return contents;
+    if (frames.last_is_cut) molecule.warn("The last frame is cut short and was left out.");
+    return std::move(molecule).finish(file, "XYZ", frames.count, options);
 }
 
 constexpr std::array<std::string_view, 2> kExtensions{"xyz", "extxyz"};

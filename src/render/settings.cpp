@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <utility>
 
 #include "base/error.h"
@@ -262,6 +263,24 @@ void read_background(Settings& settings, std::string_view text) {
     settings.shading.transparent_background = transparent;
 }
 
+/// "part:residue" says which of a molecule's levels is a part.
+void read_ids(Settings& settings, std::string_view text) {
+    const std::size_t colon = text.find(':');
+    const std::string_view level = text.substr(0, colon);
+    const bool named = colon != std::string_view::npos;
+    if (named && (level != "part" || colon + 1 == text.size())) {
+        throw UsageError(fmt::format("'{}' names no level; write for example part:chain", text));
+    }
+    settings.ids = read_optional(level, [](std::string_view word) { return kIdLevels.read(word); });
+    settings.data.parts = named ? text.substr(colon + 1) : std::string_view();
+}
+
+std::string print_ids(const Settings& settings) {
+    if (!settings.ids) return {};
+    const std::string level = kIdLevels.print(*settings.ids);
+    return settings.data.parts.empty() ? level : level + ":" + settings.data.parts;
+}
+
 int read_tile(std::string_view text) {
     const int side = read_int(text, kBlockSide, 4096);
     if (side % kBlockSide != 0) {
@@ -296,9 +315,6 @@ std::vector<Setting> make_table() {
          "beside it",
          [](S& s, Text t) { s.aovs = kAovs.read_list(t); },
          [](const S& s) { return kAovs.print_list(s.aovs); }},
-        {"frame", "Input", "K", "Frame to draw of a file that has several, from 0",
-         [](S& s, Text t) { s.frame = read_int(t, 0, 1 << 30); },
-         [](const S& s) { return fmt::format("{}", s.frame); }},
 
         {"view", "View", "SIDE",
          "auto (broad side of molecules, three quarters of meshes), front, back, left, right, top, "
@@ -356,13 +372,10 @@ std::vector<Setting> make_table() {
          [](S& s, Text t) { s.line_color = read_color(t); },
          [](const S& s) { return to_string(s.line_color); }},
         {"ids", "Lines", "LEVEL",
-         "Between what lines run: primitive (atoms, particles, triangles), part (chains, groups) "
-         "or "
-         "object; by default atoms, particles and whole meshes",
-         [](S& s, Text t) {
-             s.ids = read_optional(t, [](Text word) { return kIdLevels.read(word); });
-         },
-         [](const S& s) { return s.ids ? kIdLevels.print(*s.ids) : std::string(); }},
+         "Between what lines run: primitive (atoms, particles, triangles), part (chains, groups), "
+         "part:chain, part:residue, part:entity, part:element, part:FIELD or object; by default "
+         "atoms, particles and whole meshes",
+         read_ids, print_ids},
         {"metric", "Lines", "NAME",
          "Profile across a line: solid (method edges' own), linear (method stencil's own, the "
          "paper's equation 2) or power:P (equation 3 has P = 10)",
@@ -404,7 +417,8 @@ std::vector<Setting> make_table() {
 
 std::span<const Setting> settings_table() {
     static const std::vector<Setting> kTable = [] {
-        std::vector<Setting> table = make_table();
+        std::vector<Setting> table = data_settings_rows();
+        std::ranges::move(make_table(), std::back_inserter(table));
         for (Setting& row : table) {
             row.set = [name = row.name, set = row.set](Settings& settings, std::string_view text) {
                 try {

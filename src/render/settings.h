@@ -14,6 +14,7 @@
 #include "film/film.h"
 #include "lines/line_type.h"
 #include "lines/strength.h"
+#include "scene/data_settings.h"
 #include "scene/ids.h"
 #include "shading/shading.h"
 
@@ -52,6 +53,7 @@ struct Settings {
     Size size{1024, 1024};
     double dpi = 300.0;
     int frame = 0;
+    DataSettings data;
 
     ViewSettings view;
 
@@ -97,6 +99,9 @@ struct Setting {
     /// The value in the form that `set` reads; empty for "chosen automatically".
     std::function<std::string(const Settings&)> get;
 };
+
+/// Rows of topic "Input": what of a file is drawn, and as what (data_settings.cpp).
+std::vector<Setting> data_settings_rows();
 
 /// All settings, grouped by topic.
 std::span<const Setting> settings_table();

@@ -1,0 +1,67 @@
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "base/vec.h"
+#include "scene/colormap.h"
+
+namespace ink {
+
+/// How a molecule is drawn.
+enum class Representation : std::uint8_t {
+    spheres,         ///< each atom with its full radius (Corey and Pauling 1953)
+    ball_and_stick,  ///< small atoms, and a stick for each bond
+    sticks           ///< bonds alone, with rounded ends
+};
+
+/// Radii of atoms, in angstrom (scene/elements.h).
+enum class RadiiTable : std::uint8_t {
+    vdw,      ///< van der Waals, Mantina et al. 2009
+    bondi,    ///< van der Waals, Bondi 1964, as PyMOL draws them; vdw where Bondi gives none
+    covalent  ///< Cordero et al. 2008
+};
+
+/// What particles are drawn as.
+enum class Glyph : std::uint8_t { sphere, box, ellipsoid };
+
+/// A box in the units of the file: what has its centre outside is not drawn.
+struct ClipBox {
+    Vec3d lower{-kFar, -kFar, -kFar};
+    Vec3d upper{kFar, kFar, kFar};
+    static constexpr double kFar = std::numeric_limits<double>::infinity();
+
+    bool everything() const {
+        return lower == Vec3d{-kFar, -kFar, -kFar} && upper == Vec3d{kFar, kFar, kFar};
+    }
+    bool holds(Vec3d p) const {
+        return p.x >= lower.x && p.x <= upper.x && p.y >= lower.y && p.y <= upper.y &&
+               p.z >= lower.z && p.z <= upper.z;
+    }
+};
+
+/// What of a file is drawn, and as what. Names of fields are checked where the file is known.
+struct DataSettings {
+    std::string assembly =
+        {};  ///< biological assembly by its name in the file; empty: its atoms alone
+    std::string select = {};  ///< which atoms (scene/selection.h); empty: all
+    ClipBox clip = {};
+
+    Representation representation = Representation::spheres;
+    RadiiTable radii = RadiiTable::vdw;
+    std::string radius = {};  ///< a number for all, or a field; empty: the file's, else chosen
+    Glyph glyph = Glyph::sphere;
+    std::string glyph_field = {};  ///< the tensor or orientation of glyphs; empty: by its name
+
+    std::string color_by =
+        {};  ///< "element", "chain", ... or a field; empty: the file's, else elements
+    const ColorMap* color_map = &color_maps().front();
+    std::optional<std::pair<double, double>> color_range = {};  ///< of a field; default: all of it
+
+    std::string parts = {};  ///< "chain", "residue", ... or a field of whole numbers; empty: chains
+};
+
+}  // namespace ink

@@ -1,0 +1,303 @@
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "base/error.h"
+#include "io/molecule_file.h"
+#include "io/reader.h"
+#include "scene/elements.h"
+#include "test_files.h"
+
+namespace ink {
+namespace {
+
+using test::data_file;
+using test::TemporaryFolder;
+
+const Spheres& spheres(const FileContents& contents) {
+    return std::get<Spheres>(contents.objects.at(0).shape);
+}
+
+std::vector<Vec3d> positions(const FileContents& contents) {
+    std::vector<Vec3d> out;
+    for (const Sphere& sphere : spheres(contents).spheres) {
+        out.push_back(contents.objects[0].frame.to_world(sphere.centre));
+    }
+    return out;
+}
+
+std::string refusal(const std::filesystem::path& file, const ReadOptions& options = {}) {
+    try {
+        read_file(file, options);
+    } catch (const InputError& error) {
+        return error.what();
+    }
+    return "(it was read)";
+}
+
+void expect_refused(const std::filesystem::path& file, std::string_view problem,
+                    const ReadOptions& options = {}) {
+    const std::string message = refusal(file, options);
+    EXPECT_NE(message.find(file.string()), std::string::npos) << message;
+    EXPECT_NE(message.find(problem), std::string::npos) << message;
+}
+
+// ---- Elements from names ----
+
+TEST(ElementOfName, DependsOnTheResidue) {
+    EXPECT_EQ(element_of_name("CA", "ALA"), 6);
+    EXPECT_EQ(element_of_name("CA", "CA"), 20);
+    EXPECT_EQ(element_of_name("HG21", "THR"), 1);
+    EXPECT_EQ(element_of_name("1HB", "ALA"), 1);
+    EXPECT_EQ(element_of_name("SE", "MSE"), 34);
+    EXPECT_EQ(element_of_name("OW", "SOL"), 8);
+    EXPECT_EQ(element_of_name("NA", "NA"), 11);
+    EXPECT_EQ(element_of_name("Na", "ION"), 11);
+    EXPECT_EQ(element_of_name("CL1", "LIG"), 17);
+    EXPECT_EQ(element_of_name("C12", "LIG"), 6);
+    EXPECT_EQ(element_of_name("*", "LIG"), 0);
+}
+
+// ---- MOL2 ----
+
+constexpr std::string_view kMol2 =
+    "@<TRIPOS>MOLECULE\nwater\n 3 2\nSMALL\nNO_CHARGES\n@<TRIPOS>ATOM\n"
+    "10 O 0 0 0 O.3 1 HOH -0.8\n20 H1 1 0 0 H 1 HOH 0.4\n30 H2 0 1 0 H 1 HOH 0.4\n"
+    "@<TRIPOS>BOND\n1 10 20 1\n2 10 30 1\n";
+
+TEST(Mol2Reader, ReadsAtomsBondsAndCharges) {
+    const TemporaryFolder folder;
+    const FileContents contents = read_file(folder.write("a.mol2", kMol2));
+    EXPECT_EQ(contents.counts[0], (std::pair<std::string, std::uint64_t>{"atoms", 3}));
+    EXPECT_EQ(contents.counts.back(), (std::pair<std::string, std::uint64_t>{"bonds", 2}));
+    EXPECT_EQ(spheres(contents).colors[0], element(8).color);
+    EXPECT_NEAR(contents.fields.at(0).least, -0.8, 1e-6);
+}
+
+TEST(Mol2Reader, CountsMoleculesAsFrames) {
+    const TemporaryFolder folder;
+    std::string two(kMol2);
+    two += "@<TRIPOS>MOLECULE\nlone\n1 0\nSMALL\nX\n@<TRIPOS>ATOM\n1 N 7 0 0 N.3\n";
+    const auto file = folder.write("a.mol2", two);
+    EXPECT_EQ(read_file(file).frames, 2);
+    EXPECT_EQ(positions(read_file(file, {.frame = 1})), (std::vector<Vec3d>{{7, 0, 0}}));
+    expect_refused(file, "its 2 frames are 0 to 1", {.frame = 2});
+}
+
+TEST(Mol2Reader, RefusesWhatMakesNoSense) {
+    const TemporaryFolder folder;
+    const auto with = [&](std::string_view what, std::string_view other) {
+        std::string text(kMol2);
+        text.replace(text.find(what), what.size(), other);
+        return folder.write("a.mol2", text);
+    };
+    expect_refused(with("2 10 30 1", "2 10 77 1"), ":12: the bond names atom '77'");
+    expect_refused(with("2 10 30 1", "2 10 10 1"), ":12: the bond joins an atom with itself");
+    expect_refused(with(" 3 2", " 4 2"), "announces 4 atoms, but 3 follow");
+    expect_refused(with("20 H1 1 0 0 H", "20 H1 1 nan 0 H"), ":8: coordinate y 'nan'");
+    expect_refused(folder.write("b.mol2", "hello\n"), "has no line '@<TRIPOS>MOLECULE'");
+}
+
+TEST(Mol2Reader, TakesTheElementFromTheNameWhereTypesAreAForceFields) {
+    const TemporaryFolder folder;
+    const auto file = folder.write(
+        "a.mol2",
+        "@<TRIPOS>MOLECULE\nx\n2\nSMALL\nX\n@<TRIPOS>ATOM\n1 C1 0 0 0 ca\n2 O 9 0 0 oh\n");
+    EXPECT_EQ(spheres(read_file(file)).colors,
+              (std::vector<Rgb8>{element(6).color, element(8).color}));
+}
+
+// ---- GRO ----
+
+std::string gro_atom(std::string_view residue, std::string_view name, int number, Vec3d nm) {
+    return fmt::format("{:5}{:<5}{:>5}{:5}{:8.3f}{:8.3f}{:8.3f}\n", number, residue, name, number,
+                       nm.x, nm.y, nm.z);
+}
+
+TEST(GroReader, TurnsNanometresIntoAngstrom) {
+    const TemporaryFolder folder;
+    const std::string frame = "title\n2\n" + gro_atom("ALA", "CA", 1, {0.1, 0.2, -0.3}) +
+                              gro_atom("SOL", "OW", 2, {1, 2, 3}) + "1 1 1\n";
+    const auto file = folder.write("a.gro", frame + frame);
+    const FileContents contents = read_file(file, {.frame = 1});
+    EXPECT_EQ(contents.frames, 2);
+    EXPECT_EQ(contents.length_unit, "angstrom");
+    EXPECT_NEAR(length(positions(contents)[0] - Vec3d{1, 2, -3}), 0.0, 1e-6);
+    EXPECT_EQ(spheres(contents).colors[0], element(6).color);
+}
+
+TEST(GroReader, FindsColumnsOfAnyPrecision) {
+    const TemporaryFolder folder;
+    const auto file = folder.write(
+        "a.gro", "t\n1\n    1ALA     CA    1   0.12345  -1.00000   2.50000  0.1 0.1 0.1\n1 1 1\n");
+    EXPECT_NEAR(length(positions(read_file(file))[0] - Vec3d{1.2345, -10, 25}), 0.0, 1e-5);
+}
+
+TEST(GroReader, RefusesACountThatTheFileDoesNotHold) {
+    const TemporaryFolder folder;
+    const auto file = folder.write("a.gro", "t\n3\n" + gro_atom("ALA", "CA", 1, {}) + "1 1 1\n");
+    expect_refused(file, ":2: announces 3 atoms");
+    expect_refused(folder.write("b.gro", "t\nmany\n"), ":2: expected the number of atoms");
+}
+
+// ---- PQR ----
+
+TEST(PqrReader, DrawsTheRadiiOfTheFile) {
+    const TemporaryFolder folder;
+    const auto file = folder.write("a.pqr",
+                                   "REMARK x\nATOM 1 N ALA 1 0 0 0 -0.4 1.5\n"
+                                   "ATOM 2 CA ALA A 1 3.0 0 0 0.1 2.0\n"
+                                   "ATOM 3 HA ALA A 1 4.0 0 0 0.1 0.0\nTER\n");
+    const FileContents contents = read_file(file);
+    ASSERT_EQ(spheres(contents).spheres.size(), 2U);
+    EXPECT_FLOAT_EQ(spheres(contents).spheres[0].radius, 1.5F);
+    EXPECT_FLOAT_EQ(spheres(contents).spheres[1].radius, 2.0F);
+    ASSERT_EQ(contents.warnings.size(), 1U);
+    EXPECT_NE(contents.warnings[0].find("1 atom has no radius"), std::string::npos);
+    EXPECT_EQ(spheres(read_file(file, {.data = {.radius = "0.5"}})).spheres.size(), 3U);
+}
+
+TEST(PqrReader, RefusesRadiiThatNoAtomHas) {
+    const TemporaryFolder folder;
+    expect_refused(folder.write("a.pqr", "ATOM 1 N ALA 1 0 0 0 0 -1\n"),
+                   ":1: the radius is negative");
+    expect_refused(folder.write("b.pqr", "ATOM 1 N ALA 1 0 0 0 0 x\n"), ":1: the radius 'x'");
+    expect_refused(folder.write("c.pqr", "ATOM 1 N ALA 1 0 0 0\n"),
+                   ":1: the atom has 8 of at least");
+}
+
+// ---- Small-molecule CIF ----
+
+std::string crystal(std::string_view beta, std::string_view rows) {
+    return fmt::format(
+        "data_x\n_cell_length_a 10.0(2)\n_cell_length_b 20\n_cell_length_c 5\n"
+        "_cell_angle_alpha 90\n_cell_angle_beta {}\n_cell_angle_gamma 90\nloop_\n"
+        "_atom_site_label\n_atom_site_type_symbol\n_atom_site_fract_x\n_atom_site_fract_y\n"
+        "_atom_site_fract_z\n_atom_site_disorder_group\n{}",
+        beta, rows);
+}
+
+TEST(CrystalReader, TurnsFractionsOfTheCellIntoAngstrom) {
+    const TemporaryFolder folder;
+    const FileContents contents = read_file(
+        folder.write("a.cif", crystal("120(1)", "C1 C 0.5 0.25(3) 0 .\nFe1 Fe3+ 0 0 1 .\n")));
+    const auto p = positions(contents);
+    EXPECT_NEAR(length(p[0] - Vec3d{5, 5, 0}), 0.0, 1e-6);
+    // c makes 120 degrees with a, in the plane of a and c.
+    EXPECT_NEAR(length(p[1] - Vec3d{-2.5, 0, 5 * std::sqrt(0.75)}), 0.0, 1e-6);
+    EXPECT_EQ(spheres(contents).colors[1], element(26).color);
+}
+
+TEST(CrystalReader, KeepsTheFirstDisorderGroup) {
+    const TemporaryFolder folder;
+    const FileContents contents = read_file(
+        folder.write("a.cif", crystal("90", "C1 C 0 0 0 .\nC2 C 0.5 0 0 1\nC3 C 0.6 0 0 2\n")));
+    EXPECT_EQ(spheres(contents).spheres.size(), 2U);
+}
+
+TEST(CrystalReader, RefusesACellThatIsNone) {
+    const TemporaryFolder folder;
+    expect_refused(folder.write("a.cif", crystal("0", "C1 C 0 0 0 .\n")), "_cell_angle_beta '0'");
+    expect_refused(folder.write("b.cif", crystal("90", "C1 C 0 ? 0 .\n")),
+                   "coordinate y is missing");
+    expect_refused(folder.write("c.cif",
+                                "data_x\nloop_\n_atom_site_fract_x\n_atom_site_fract_y\n"
+                                "_atom_site_fract_z\n0 0 0\n"),
+                   "no _cell_length_a");
+}
+
+TEST(MmcifReader, ReadsALoneAtomWithoutALoop) {
+    const TemporaryFolder folder;
+    const auto file = folder.write(
+        "a.cif",
+        "data_x\n_atom_site.type_symbol Zn\n_atom_site.Cartn_x 1\n_atom_site.Cartn_y 2\n"
+        "_atom_site.Cartn_z 3\n");
+    EXPECT_EQ(positions(read_file(file)), (std::vector<Vec3d>{{1, 2, 3}}));
+}
+
+// ---- Assemblies ----
+
+constexpr std::string_view kPdbAssembly =
+    "REMARK 350 BIOMOLECULE: 1\nREMARK 350 APPLY THE FOLLOWING TO CHAINS: A\n"
+    "REMARK 350   BIOMT1   1  1.000000  0.000000  0.000000        0.00000\n"
+    "REMARK 350   BIOMT2   1  0.000000  1.000000  0.000000        0.00000\n"
+    "REMARK 350   BIOMT3   1  0.000000  0.000000  1.000000        0.00000\n"
+    "REMARK 350   BIOMT1   2  0.000000 -1.000000  0.000000       10.00000\n"
+    "REMARK 350   BIOMT2   2  1.000000  0.000000  0.000000        0.00000\n"
+    "REMARK 350   BIOMT3   2  0.000000  0.000000  1.000000        0.00000\n"
+    "ATOM      1  CA  ALA A   1       1.000   2.000   3.000  1.00 10.00           C\n"
+    "ATOM      2  CA  ALA B   1       4.000   5.000   6.000  1.00 20.00           C\n";
+
+constexpr std::string_view kCifAssembly =
+    "data_x\nloop_\n_pdbx_struct_assembly_gen.assembly_id\n"
+    "_pdbx_struct_assembly_gen.oper_expression\n_pdbx_struct_assembly_gen.asym_id_list\n"
+    "1 '(1-2)' X\n2 (1)(2) X,Y\nloop_\n_pdbx_struct_oper_list.id\n"
+    "_pdbx_struct_oper_list.matrix[1][1]\n_pdbx_struct_oper_list.matrix[1][2]\n"
+    "_pdbx_struct_oper_list.matrix[1][3]\n_pdbx_struct_oper_list.vector[1]\n"
+    "_pdbx_struct_oper_list.matrix[2][1]\n_pdbx_struct_oper_list.matrix[2][2]\n"
+    "_pdbx_struct_oper_list.matrix[2][3]\n_pdbx_struct_oper_list.vector[2]\n"
+    "_pdbx_struct_oper_list.matrix[3][1]\n_pdbx_struct_oper_list.matrix[3][2]\n"
+    "_pdbx_struct_oper_list.matrix[3][3]\n_pdbx_struct_oper_list.vector[3]\n"
+    "1 1 0 0 0 0 1 0 0 0 0 1 0\n2 0 -1 0 10 1 0 0 0 0 0 1 0\n"
+    "loop_\n_atom_site.type_symbol\n_atom_site.label_asym_id\n_atom_site.auth_asym_id\n"
+    "_atom_site.auth_seq_id\n_atom_site.label_comp_id\n_atom_site.Cartn_x\n_atom_site.Cartn_y\n"
+    "_atom_site.Cartn_z\nC X A 1 ALA 1 2 3\nC Y B 1 ALA 4 5 6\n";
+
+TEST(Assemblies, CopyTheirChainsByTheirMotions) {
+    const TemporaryFolder folder;
+    for (const auto& file :
+         {folder.write("a.pdb", kPdbAssembly), folder.write("a.cif", kCifAssembly)}) {
+        SCOPED_TRACE(file);
+        const FileContents contents = read_file(file, {.data = {.assembly = "1"}});
+        const auto p = positions(contents);
+        ASSERT_EQ(p.size(), 2U);
+        EXPECT_NEAR(length(p[0] - Vec3d{1, 2, 3}), 0.0, 1e-6);
+        EXPECT_NEAR(length(p[1] - Vec3d{8, 1, 3}), 0.0, 1e-6);
+        EXPECT_EQ(contents.objects[0].part_names,
+                  (std::vector<std::string>{"A", "B", "A-2", "B-2"}));
+        EXPECT_EQ(spheres(contents).parts, (std::vector<std::uint32_t>{0, 2}));
+    }
+}
+
+TEST(Assemblies, MultiplyGroupsOfOperators) {
+    const TemporaryFolder folder;
+    const FileContents contents =
+        read_file(folder.write("a.cif", kCifAssembly), {.data = {.assembly = "2"}});
+    EXPECT_NEAR(length(positions(contents).at(1) - Vec3d{5, 4, 6}), 0.0, 1e-6);
+}
+
+TEST(Assemblies, ThatAreNotThereAreNamed) {
+    const TemporaryFolder folder;
+    const auto file = folder.write("a.cif", kCifAssembly);
+    expect_refused(file, "--assembly: there is no '3'; the file describes 1, 2",
+                   {.data = {.assembly = "3"}});
+    expect_refused(folder.write("a.xyz", "1\n\nC 0 0 0\n"), "the file describes none",
+                   {.data = {.assembly = "1"}});
+}
+
+TEST(Assemblies, RefuseOperatorsThatAreNotThereOrTooMany) {
+    const TemporaryFolder folder;
+    const auto with = [&](std::string_view expression) {
+        std::string text(kCifAssembly);
+        text.replace(text.find("'(1-2)'"), 7, expression);
+        return folder.write("a.cif", text);
+    };
+    expect_refused(with("1,9"), "an unknown operator");
+    expect_refused(with("(1-2"), "brackets that do not match");
+    expect_refused(with("(1-999999999)"), "too many operators");
+}
+
+TEST(RealMolecules, BuildTheCapsidOfSixtyUnits) {
+    const auto file = data_file("molecules/1rb8_capsid_asu.pdb.gz");
+    if (!std::filesystem::exists(file)) GTEST_SKIP() << "no real files here";
+    const FileContents contents = read_file(file, {.data = {.assembly = "1"}});
+    EXPECT_EQ(spheres(contents).spheres.size(), 306'720U);
+    // An icosahedral shell about the origin: as long in every direction.
+    const Bounds3d box = contents.objects[0].world_bounds();
+    EXPECT_NEAR(box.lower.x, -box.upper.x, 0.01 * box.upper.x);
+    EXPECT_NEAR(box.extent().x, box.extent().y, 0.05 * box.extent().x);
+}
+
+}  // namespace
+}  // namespace ink
