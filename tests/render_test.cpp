@@ -346,6 +346,8 @@ TEST(AntiAliasing, SmoothsAnEdgeOfTheShading) {
 
 TEST(Ids, DecideBetweenWhatLinesRun) {
     Settings settings = plan_view({64, 32});
+    settings.lines = {};  // as one geometry, the two balls meet in a crease
+    settings.lines.add(LineType::intersection);
     const std::vector<Object> two{sphere_object({{{-8, 0, 0}, 10}, {{8, 0, 0}, 10}})};
     const auto seam_strength = [&](std::optional<IdLevel> level) {
         settings.ids = level;

@@ -44,6 +44,10 @@ class Camera {
     /// the ray through a screen point.
     float distance_from_eye(Vec2f point, float t) const;
 
+    /// The same for hits of a packet of camera rays. Infinite on a miss.
+    INKTRACE_INLINE void distances_from_eye(const RayPacket& rays, const Lanes<float>& t,
+                                            Lanes<float>& distances) const;
+
     Vec3f right() const { return to_float(right_); }  ///< unit, scene frame
     Vec3f up() const { return to_float(up_); }        ///< unit, scene frame
     Vec3f back() const { return to_float(back_); }    ///< unit, towards the viewer
@@ -100,6 +104,17 @@ void Camera::make_rays(const Lanes<float>& x, const Lanes<float>& y, RayPacket& 
         rays.dir_x[i] = dx * scale;
         rays.dir_y[i] = dy * scale;
         rays.dir_z[i] = dz * scale;
+    }
+}
+
+void Camera::distances_from_eye(const RayPacket& rays, const Lanes<float>& t,
+                                Lanes<float>& distances) const {
+    const Vec3f forward = to_float(-back_);
+    const auto depth = static_cast<float>(start_depth_);
+    for (int i = 0; i < kLanes; ++i) {
+        const float cosine =
+            rays.dir_x[i] * forward.x + rays.dir_y[i] * forward.y + rays.dir_z[i] * forward.z;
+        distances[i] = t[i] + depth / cosine;
     }
 }
 

@@ -22,7 +22,8 @@ AovWriter::AovWriter(const Scene& scene, const Camera& camera, const std::vector
                 for (const auto& [name, level] : {std::pair{"id.primitive", IdLevel::primitive},
                                                   std::pair{"id.part", IdLevel::part},
                                                   std::pair{"id.object", IdLevel::object}}) {
-                    ids_.push_back({film.add_plane<std::uint32_t>(name), LineIds(scene, level)});
+                    ids_.push_back(
+                        {film.add_plane<std::uint32_t>(name), LineIds::at_level(scene, level)});
                 }
                 break;
             case Aov::depth: depth_ = add_planes({"Z"}); break;

@@ -28,7 +28,7 @@ Viewpoint::Affine affine(Vec3f at_zero, Vec3f dx, Vec3f dy) {
 Edges::Edges(const Pipeline& shared)
     : pipeline(shared),
       q(shared.settings.lattice_points()),
-      surfaces(shared.scene),
+      surfaces(shared.scene, shared.settings.shading.normals),
       draw_lines(shared.settings.draws_lines()),
       smooth_shading(shared.settings.smoothing().kind == AntiAliasing::Kind::edges),
       wanted(shared.settings.lines),

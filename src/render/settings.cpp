@@ -194,6 +194,9 @@ const Words<LineType> kLineTypes{{{"silhouette", LineType::silhouette},
                                   {"crease", LineType::crease}}};
 const Words<IdLevel> kIdLevels{
     {{"primitive", IdLevel::primitive}, {"part", IdLevel::part}, {"object", IdLevel::object}}};
+const Words<NormalSource> kNormalSources{{{"auto", NormalSource::automatic},
+                                          {"shading", NormalSource::shading},
+                                          {"geometric", NormalSource::geometric}}};
 const Words<Compose> kComposes{
     {{"shaded", Compose::shaded}, {"lines", Compose::lines}, {"both", Compose::both}}};
 const Words<ShadeMode> kShadeModes{{{"lambert", ShadeMode::lambert},
@@ -384,6 +387,23 @@ std::vector<Setting> make_table() {
         {"quality", "Lines", "N", "Method stencil: rings of a stencil, 4 N (N + 1) rays a sample",
          [](S& s, Text t) { s.rings = read_int(t, 1, 64); },
          [](const S& s) { return fmt::format("{}", s.rings); }},
+        {"normals", "Lines", "WHICH",
+         "Normals that creases are found by: auto (smooth but for a mesh's own creases), shading "
+         "(as shaded: a file's smooth normals hide creases) or geometric (every edge of a facet)",
+         [](S& s, Text t) { s.shading.normals = kNormalSources.read(t); },
+         [](const S& s) { return kNormalSources.print(s.shading.normals); }},
+        {"crease-gradient", "Lines", "G",
+         "Method stencil: a crease is where the normal changes by more than this a pixel",
+         [](S& s, Text t) {
+             s.thresholds.crease_gradient = static_cast<float>(read_number(t, 1e-6, 10));
+         },
+         [](const S& s) { return fmt::format("{}", s.thresholds.crease_gradient); }},
+        {"depth-jump", "Lines", "SHARE",
+         "Method stencil: a self-occlusion is where depth changes by more than this share of it",
+         [](S& s, Text t) {
+             s.thresholds.depth_share = static_cast<float>(read_number(t, 1e-6, 1e6));
+         },
+         [](const S& s) { return fmt::format("{}", s.thresholds.depth_share); }},
         {"line-blend", "Lines", "SPACE",
          "Values in which lines are mixed with the picture: display (sRGB), linear, or auto: "
          "linear "

@@ -13,6 +13,7 @@
 #include "camera/camera.h"
 #include "film/film.h"
 #include "lines/line_type.h"
+#include "lines/stencil_features.h"
 #include "lines/strength.h"
 #include "scene/data_settings.h"
 #include "scene/ids.h"
@@ -66,6 +67,7 @@ struct Settings {
     std::optional<IdLevel> ids;
     std::optional<Metric> metric;  ///< default: solid for method "edges", linear for "stencil"
     int rings = 1;
+    StencilThresholds thresholds;  ///< of method "stencil"
 
     Compose compose = Compose::both;
     ShadingSettings shading;

@@ -2,6 +2,7 @@
 #include <vector>
 
 #include "base/parallel.h"
+#include "lines/stencil_features.h"
 #include "lines/strength.h"
 #include "render/pipeline.h"
 #include "render/tiles.h"
@@ -17,14 +18,19 @@ struct Stencils {
     explicit Stencils(const Pipeline& shared)
         : pipeline(shared),
           samples(multisample_offsets(shared.settings.smoothing().samples)),
-          draw_lines(shared.settings.draws_lines() &&
-                     (shared.settings.lines.has(LineType::silhouette) ||
-                      shared.settings.lines.has(LineType::intersection))),
+          outlines(shared.settings.lines.has(LineType::silhouette) ||
+                   shared.settings.lines.has(LineType::intersection)),
+          creases(shared.settings.lines.has(LineType::crease)),
+          occlusions(shared.settings.lines.has(LineType::self_occlusion)),
+          draw_lines(shared.settings.draws_lines() && (outlines || creases || occlusions)),
           shaded(shared.settings.smoothing().kind == AntiAliasing::Kind::stencil) {
         const Settings& settings = shared.settings;
         if (!draw_lines && !shaded) return;
         const auto radius = static_cast<float>(settings.line_width_px() * 0.5);
         points = ring_stencil(radius, settings.rings);
+        axes = stencil_axes(settings.rings);
+        const float crease = settings.thresholds.crease_gradient * 2.0F * radius;
+        crease_squared = crease * crease;
         reach = radius + 1.0F;
         const int M = static_cast<int>(points.size());
         const Metric metric = settings.profile();
@@ -38,7 +44,10 @@ struct Stencils {
     std::vector<Vec2f> samples;    ///< a pixel's sample rays, offsets from its centre
     std::vector<Vec2f> points;     ///< of a stencil, offsets from the sample; empty: not needed
     std::vector<float> strengths;  ///< e_M(m) for m = 0..M
+    StencilAxes axes{};            ///< among `points`
+    float crease_squared = 0.0F;   ///< least square of the normal's difference across a stencil
     float reach = 1.0F;            ///< of a pixel's samples and their stencils, pixels
+    bool outlines, creases, occlusions;  ///< which lines are wanted
     bool draw_lines;
     bool shaded;  ///< stencil anti-aliasing
 };
@@ -52,6 +61,7 @@ struct Workspace {
     Sampler sampler;
     std::vector<Block> blocks, empty;
     std::vector<HitPacket> hits;          ///< of the sample rays
+    std::vector<RayPacket> sample_rays;   ///< if self-occlusions are looked for
     std::vector<ColorPacket> colors;      ///< c_s
     std::vector<std::uint8_t> seen;       ///< 0: nothing but background
     std::vector<Lanes<float>> strengths;  ///< e_s
@@ -60,10 +70,14 @@ struct Workspace {
     RenderStats stats;
 };
 
-void trace_samples(Workspace& work, Vec2f offset) {
+void trace_samples(const Stencils& stencils, Workspace& work, Vec2f offset) {
     const Timer timer(work.stats.trace_ms);
     work.hits.resize(work.blocks.size());
     work.sampler.trace_blocks(work.blocks, offset, work.hits);
+    if (stencils.draw_lines && stencils.occlusions) {
+        const auto rays = work.sampler.packets();
+        work.sample_rays.assign(rays.begin(), rays.end());
+    }
 }
 
 /// Shades block k of the tile, of which those before it have been shaded. False: only background.
@@ -98,19 +112,76 @@ void shade_pixels(const Stencils& stencils, Workspace& work) {
     }
 }
 
-/// Section 3.1, case 1: m stencil rays hit other geometry than s; the edge strength is e_M(m).
-void measure_strength(const Stencils& stencils, const HitPacket& samples,
-                      const std::vector<HitPacket>& stencil, Lanes<float>& strength) {
+/// Section 3.1, case 1: m, the number of stencil rays that hit other geometry than s. True where
+/// case 2 is left to look at: s hit something on which there can be a line, and m = 0.
+bool count_foreign(const Stencils& stencils, const HitPacket& samples,
+                   const std::vector<HitPacket>& stencil, Lanes<std::int32_t>& m) {
+    const LineIds& ids = stencils.pipeline.ids;
     Lanes<GeometryId> own;
     Lanes<GeometryId> other;
-    Lanes<std::int32_t> m{};
-    stencils.pipeline.ids.resolve(samples, own);
+    m.fill(0);
+    ids.resolve(samples, own);
     for (const HitPacket& hits : stencil) {
-        stencils.pipeline.ids.resolve(hits, other);
+        ids.resolve(hits, other);
         count_foreign(own, other, m);
     }
+    bool any_alike = false;
     for (int i = 0; i < kLanes; ++i) {
-        strength[i] = stencils.strengths[static_cast<std::size_t>(m[i])];
+        any_alike |= m[i] == 0 && own[i] != kBackground && !ids.is_ball(samples.object[i]);
+    }
+    return any_alike;
+}
+
+/// Section 3.1, case 2: |n_right - n_left|^2 + |n_up - n_down|^2 over the outer ring.
+void measure_normal_gradient(const Stencils& stencils, Workspace& work, Lanes<float>& squared) {
+    const auto normals = [&](std::size_t k) {
+        // Shaded stencils face the viewer already.
+        if (!stencils.shaded) work.sampler.turn_to_viewer(k, work.stencil_hits[k]);
+        NormalPacket packet;
+        stencils.pipeline.shader.line_normals(work.stencil_hits[k], packet);
+        return AxisNormals{packet.x, packet.y, packet.z};
+    };
+    squared.fill(0.0F);
+    add_normal_difference(normals(stencils.axes.right), normals(stencils.axes.left), squared);
+    add_normal_difference(normals(stencils.axes.up), normals(stencils.axes.down), squared);
+}
+
+/// Section 3.1, case 2: d, the number of stencil rays with |t_r - t_s| > T.
+void count_depth_jumps(const Stencils& stencils, const Workspace& work, std::size_t block,
+                       Lanes<std::int32_t>& d) {
+    const Camera& camera = stencils.pipeline.camera;
+    const float share = stencils.pipeline.settings.thresholds.depth_share;
+    Lanes<float> own;
+    Lanes<float> other;
+    Lanes<float> threshold;
+    camera.distances_from_eye(work.sample_rays[block], work.hits[block].t, own);
+    for (int i = 0; i < kLanes; ++i) threshold[i] = share * own[i];
+    d.fill(0);
+    for (std::size_t k = 0; k < work.stencil_hits.size(); ++k) {
+        camera.distances_from_eye(work.sampler.packets()[k], work.stencil_hits[k].t, other);
+        count_depth_jumps(own, other, threshold, d);
+    }
+}
+
+/// Section 3.1: the strength e_s of every sample of a block, whose stencils have just been traced.
+void measure_strength(const Stencils& stencils, Workspace& work, std::size_t block,
+                      Lanes<float>& strength) {
+    const auto e = [&](std::int32_t rays) {
+        return stencils.strengths[static_cast<std::size_t>(rays)];
+    };
+    Lanes<std::int32_t> m;
+    const bool any_alike = count_foreign(stencils, work.hits[block], work.stencil_hits, m);
+    for (int i = 0; i < kLanes; ++i) strength[i] = stencils.outlines ? e(m[i]) : 0.0F;
+    if (!any_alike || !(stencils.creases || stencils.occlusions)) return;
+
+    Lanes<float> gradient{};
+    Lanes<std::int32_t> d{};
+    if (stencils.creases) measure_normal_gradient(stencils, work, gradient);
+    if (stencils.occlusions) count_depth_jumps(stencils, work, block, d);
+    for (int i = 0; i < kLanes; ++i) {
+        const std::uint32_t object = work.hits[block].object[i];
+        if (m[i] != 0 || object == kNoObject || stencils.pipeline.ids.is_ball(object)) continue;
+        strength[i] = gradient[i] > stencils.crease_squared ? 1.0F : e(d[i]);
     }
 }
 
@@ -133,7 +204,7 @@ void trace_stencils(const Stencils& stencils, Workspace& work, Vec2f offset) {
         work.sampler.trace_stencils(work.blocks[k], offset, stencils.points, stencils.shaded,
                                     work.stencil_hits);
         if (stencils.draw_lines) {
-            measure_strength(stencils, work.hits[k], work.stencil_hits, work.strengths[k]);
+            measure_strength(stencils, work, k, work.strengths[k]);
         }
         if (stencils.shaded) {
             average_colors(stencils, work.stencil_hits, work.colors[k]);
@@ -183,12 +254,12 @@ void render_tile(const Stencils& stencils, Workspace& work, const Tile& tile) {
         stencils.pipeline.film.put_background(block.x, block.y);
     }
     if (stencils.plain() && !stencils.shaded && !stencils.pipeline.aovs) {
-        trace_samples(work, stencils.samples[0]);
+        trace_samples(stencils, work, stencils.samples[0]);
         return shade_pixels(stencils, work);
     }
     work.sums.clear();
     for (const Vec2f offset : stencils.samples) {
-        trace_samples(work, offset);
+        trace_samples(stencils, work, offset);
         shade_samples(stencils, work);
         trace_stencils(stencils, work, offset);
         mix_samples(stencils, work);

@@ -40,18 +40,30 @@ void resolve_one_object(const HitPacket& hits, GeometryId first, std::uint32_t s
 LineIds::LineIds(const Scene& scene, std::optional<IdLevel> level) {
     GeometryId next = kBackground + 1;
     for (const Object& object : scene.objects()) {
-        const IdLevel own =
-            level.value_or(object.kind == ObjectKind::mesh ? IdLevel::object : IdLevel::primitive);
-        if (const Groups* own_groups = groups(object, own)) {
-            objects_.push_back({next, 0, own_groups});
-            next += *std::ranges::max_element(*own_groups) + 1;
-        } else if (own == IdLevel::primitive) {
-            objects_.push_back({next, 1, nullptr});
-            next += static_cast<GeometryId>(object.primitive_count());
-        } else {
-            objects_.push_back({next, 0, nullptr});
-            next += 1;
-        }
+        const IdLevel usual =
+            object.kind == ObjectKind::mesh ? IdLevel::object : IdLevel::primitive;
+        add(object, object.ids.value_or(level.value_or(usual)), next);
+    }
+}
+
+LineIds LineIds::at_level(const Scene& scene, IdLevel level) {
+    LineIds ids;
+    GeometryId next = kBackground + 1;
+    for (const Object& object : scene.objects()) ids.add(object, level, next);
+    return ids;
+}
+
+void LineIds::add(const Object& object, IdLevel level, GeometryId& next) {
+    if (const Groups* own_groups = groups(object, level)) {
+        objects_.push_back({next, 0, own_groups});
+        next += *std::ranges::max_element(*own_groups) + 1;
+    } else if (level == IdLevel::primitive) {
+        const bool ball = std::holds_alternative<Spheres>(object.shape);
+        objects_.push_back({next, 1, nullptr, ball});
+        next += static_cast<GeometryId>(object.primitive_count());
+    } else {
+        objects_.push_back({next, 0, nullptr});
+        next += 1;
     }
 }
 

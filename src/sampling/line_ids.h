@@ -12,18 +12,29 @@ namespace ink {
 /// its own. The IDs of a level are the same however many threads or tiles there are.
 class LineIds {
   public:
-    /// `level` for every object; by default particles and atoms are told apart one by one and a
-    /// mesh is one object.
+    /// `level` for every object that names none of its own; by default particles and atoms are told
+    /// apart one by one and a mesh is one object.
     LineIds(const Scene& scene, std::optional<IdLevel> level);
+
+    /// `level` for every object, whatever it names.
+    static LineIds at_level(const Scene& scene, IdLevel level);
+
+    /// Whether all that shares an ID of this object is one ball, on which there is no line: neither
+    /// crease nor self-occlusion.
+    bool is_ball(std::uint32_t object) const { return objects_[object].ball; }
 
     void resolve(const HitPacket& hits, Lanes<GeometryId>& ids) const;
     GeometryId resolve(std::uint32_t object, std::uint32_t primitive) const;
 
   private:
+    LineIds() = default;
+    void add(const Object& object, IdLevel level, GeometryId& next);
+
     struct ObjectIds {
         GeometryId first;      ///< of the object's IDs
         std::uint32_t stride;  ///< 1: every primitive has its own; 0: they share one
         const std::vector<std::uint32_t>* groups = nullptr;  ///< instead: an offset a primitive
+        bool ball = false;                                   ///< an ID is one sphere
     };
     std::vector<ObjectIds> objects_;
 };

@@ -76,6 +76,10 @@ void Sampler::trace_stencils(Block block, Vec2f offset, std::span<const Vec2f> s
     trace(with_normals, hits);
 }
 
+void Sampler::turn_to_viewer(std::size_t k, HitPacket& hits) const {
+    face_viewer(&packets_[k], {&hits, 1});
+}
+
 void Sampler::trace_points(std::span<const Vec2f> points, std::vector<HitPacket>& hits) {
     const std::size_t count = (points.size() + kLanes - 1) / kLanes;
     packets_.resize(count);

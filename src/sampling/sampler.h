@@ -35,6 +35,10 @@ class Sampler {
     void trace_stencils(Block block, Vec2f offset, std::span<const Vec2f> stencil,
                         bool with_normals, std::span<HitPacket> hits);
 
+    /// Makes the normals of the hits of packet k of the last call unit and face the ray's origin,
+    /// where that was not asked for.
+    void turn_to_viewer(std::size_t k, HitPacket& hits) const;
+
     /// Rays through any points of the screen (pixels), sixteen a packet in the order given; the
     /// last packet is filled up with inactive ones. Normals as in trace_blocks.
     void trace_points(std::span<const Vec2f> points, std::vector<HitPacket>& hits);

@@ -18,6 +18,12 @@ std::vector<Vec2f> ring_stencil(float radius, int rings) {
     return offsets;
 }
 
+StencilAxes stencil_axes(int rings) {
+    const auto n = static_cast<std::size_t>(rings);
+    const std::size_t outer = 4 * n * (n - 1);  // rays of the rings inside
+    return {outer, outer + 2 * n, outer + 4 * n, outer + 6 * n};
+}
+
 std::vector<Vec2f> multisample_offsets(int samples) {
     std::vector<Vec2f> offsets;
     const int side = static_cast<int>(std::lround(std::sqrt(samples)));

@@ -32,12 +32,17 @@ Ball Surfaces::ball(const HitPacket& hits, int lane) const {
 bool Surfaces::smooth_between(const HitPacket& a, int lane_a, const HitPacket& b,
                               int lane_b) const {
     if (a.object[lane_a] == kNoObject || a.object[lane_a] != b.object[lane_b]) return false;
+    const Object& object = scene_.objects()[a.object[lane_a]];
     const std::uint32_t primitive_a = a.primitive[lane_a];
     const std::uint32_t primitive_b = b.primitive[lane_b];
-    if (primitive_a == primitive_b) return true;
-    const auto* mesh = std::get_if<Mesh>(&scene_.objects()[a.object[lane_a]].shape);
-    return mesh != nullptr && across_smooth_edge(*mesh, primitive_a, hit_normal(a, lane_a),
-                                                 primitive_b, hit_normal(b, lane_b));
+    const auto* mesh = std::get_if<Mesh>(&object.shape);
+    if (primitive_a == primitive_b) {
+        return mesh != nullptr || std::holds_alternative<Spheres>(object.shape);
+    }
+    const bool facets_turn = object.normals.value_or(normals_) == NormalSource::geometric;
+    return mesh != nullptr && !facets_turn &&
+           across_smooth_edge(*mesh, primitive_a, hit_normal(a, lane_a), primitive_b,
+                              hit_normal(b, lane_b));
 }
 
 bool Surfaces::across_smooth_edge(const Mesh& mesh, std::uint32_t a, Vec3f normal_a,

@@ -11,7 +11,8 @@ namespace ink {
 /// What the scene knows of the surfaces that rays hit, which spares the search for lines many rays.
 class Surfaces {
   public:
-    explicit Surfaces(const Scene& scene) : scene_(scene) {}
+    /// `normals`: which ones creases are found by, of objects that name none of their own.
+    Surfaces(const Scene& scene, NormalSource normals) : scene_(scene), normals_(normals) {}
 
     /// The sphere that was hit from outside, if it was one.
     Ball ball(const HitPacket& hits, int lane) const;
@@ -26,6 +27,7 @@ class Surfaces {
                             Vec3f normal_b) const;
 
     const Scene& scene_;
+    NormalSource normals_;
 };
 
 }  // namespace ink

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -41,6 +42,9 @@ struct Object {
     Shape shape;
     Material material{};
     std::vector<std::string> part_names{};
+    /// What lines tell apart and find creases by; default: as for the picture.
+    std::optional<IdLevel> ids{};
+    std::optional<NormalSource> normals{};
 
     std::size_t primitive_count() const { return ink::primitive_count(shape); }
     Bounds3d world_bounds() const;

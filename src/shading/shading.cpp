@@ -77,10 +77,12 @@ Shader::Shader(const Scene& scene, const Camera& camera, const ShadingSettings& 
             if (!mesh.colors.empty()) surface.vertex_colors = mesh.colors.data();
             if (!mesh.corner_normals.empty())
                 surface.corner_normals = mesh.corner_normals[0].data();
-            const bool own = !mesh.line_normals.empty();
+            const NormalSource source = object.normals.value_or(settings.normals);
+            const bool own = source == NormalSource::automatic && !mesh.line_normals.empty();
             surface.line_normals = own ? mesh.line_normals[0].data() : surface.corner_normals;
+            if (source == NormalSource::geometric) surface.line_normals = nullptr;
         }
-        any_smooth_ |= surface.line_normals != nullptr;
+        any_smooth_ |= surface.corner_normals != nullptr || surface.line_normals != nullptr;
         any_line_normals_ |= surface.line_normals != surface.corner_normals;
         surfaces_.push_back(surface);
     }

@@ -23,6 +23,7 @@ struct ShadingSettings {
     ShadeMode mode = ShadeMode::lambert;
     Rgb8 background{255, 255, 255};
     bool transparent_background = false;
+    NormalSource normals = NormalSource::automatic;  ///< of lines, where an object has no own
 };
 
 /// Linear colour, premultiplied by alpha.
@@ -52,7 +53,7 @@ class Shader {
     bool shade(const HitPacket& hits, const NormalPacket& normals, ColorPacket& colors) const;
     /// Shading normals: interpolated where a mesh has normals at its corners, else geometric.
     void smooth(const HitPacket& hits, NormalPacket& normals) const;
-    /// Normals that creases are found by: as `smooth`, but without what a file's own normals hide.
+    /// Normals that creases are found by, see NormalSource.
     void line_normals(const HitPacket& hits, NormalPacket& normals) const;
     /// Whether `line_normals` differ from what `smooth` gives for any object.
     bool has_line_normals() const { return any_line_normals_; }
@@ -69,7 +70,7 @@ class Shader {
         const Rgb8* vertex_colors = nullptr;
         const Mesh::Triangle* triangles = nullptr;
         const std::uint32_t* corner_normals = nullptr;  ///< three a triangle
-        const std::uint32_t* line_normals = nullptr;    ///< the same unless a mesh has its own
+        const std::uint32_t* line_normals = nullptr;    ///< likewise; null: geometric
     };
     struct Lighting {
         Vec3f key_dir, fill_dir, up;
