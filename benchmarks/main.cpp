@@ -86,7 +86,7 @@ std::vector<Variant> variants(Size size, int most_threads, bool stencils) {
 /// Rounds of R and every variant in turn, so that a machine that slows down slows all alike.
 Result measure(const NamedScene& named, Size size, int rounds, int threads, bool stencils) {
     const Scene scene(named.objects);
-    const auto tracer = make_embree_tracer(scene);
+    const auto tracer = make_tracer(scene);
     const BareLoop bare(scene);
     const std::vector<Variant> list = variants(size, threads, stencils);
     const Camera camera(scene, list[0].settings.view, size);

@@ -23,7 +23,7 @@ namespace {
 constexpr double kDegrees = std::numbers::pi / 180.0;
 
 Film draw(const Scene& scene, const Settings& settings, const PixelFormats& formats = {}) {
-    const auto tracer = make_embree_tracer(scene);
+    const auto tracer = make_tracer(scene);
     return render(scene, *tracer, settings, formats);
 }
 
@@ -335,7 +335,7 @@ INSTANTIATE_TEST_SUITE_P(OfMetric, PapersLook, testing::Values("linear", "power:
 
 TEST(Picture, OfLocatedLinesDoesNotDependOnThreadsOrTiles) {
     const Scene scene(random_objects(5, 60, 40));
-    const auto tracer = make_embree_tracer(scene);
+    const auto tracer = make_tracer(scene);
     for (int q = 1; q <= 4; ++q) {
         for (const bool transparent : {false, true}) {
             Settings settings;

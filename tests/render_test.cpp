@@ -14,7 +14,7 @@ namespace ink::test {
 namespace {
 
 Film draw(const Scene& scene, const Settings& settings, const PixelFormats& formats = {}) {
-    const auto tracer = make_embree_tracer(scene);
+    const auto tracer = make_tracer(scene);
     return render(scene, *tracer, settings, formats);
 }
 
@@ -209,7 +209,7 @@ TEST_P(Picture, KeepsItsDigitsWhenSeenFromVeryFar) {
 
 TEST(AnyPicture, DoesNotDependOnThreadsOrTiles) {
     const Scene scene(random_objects(5, 60, 40));
-    const auto tracer = make_embree_tracer(scene);
+    const auto tracer = make_tracer(scene);
     using Kind = AntiAliasing::Kind;
     for (const auto& [method, aa] :
          {std::pair{Method::stencil, AntiAliasing{Kind::none, 1}},
@@ -447,14 +447,14 @@ TEST(Camera, StandsInsideTheSceneIfTold) {
 
 TEST(Rendering, StopsWhenToldTo) {
     const Scene scene(random_objects(5, 60, 40));
-    const auto tracer = make_embree_tracer(scene);
+    const auto tracer = make_tracer(scene);
     const std::atomic<bool> cancel{true};
     EXPECT_THROW(render(scene, *tracer, small_picture(), {}, {nullptr, &cancel}), Cancelled);
 }
 
 TEST(Rendering, ReportsProgressUpToTheWhole) {
     const Scene scene(random_objects(5, 60, 40));
-    const auto tracer = make_embree_tracer(scene);
+    const auto tracer = make_tracer(scene);
     double last = 0.0;
     Settings settings = small_picture();
     settings.tile = 16;

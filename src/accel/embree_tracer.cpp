@@ -211,14 +211,17 @@ void store(const RayHit& in, int first, HitPacket& hits) {
 
 class EmbreeTracer final : public Tracer {
   public:
-    EmbreeTracer(const Scene& scene, PacketWidth width) : device_(rtcNewDevice(nullptr)) {
+    EmbreeTracer(const Scene& scene, PacketWidth width, const ObjectFilter& wanted)
+        : device_(rtcNewDevice(nullptr)) {
         check(device_.get());
         width_ = width == PacketWidth::widest ? widest_native(device_.get()) : width;
         scene_.reset(rtcNewScene(device_.get()));
         // Watertight between triangles: bisection homes in on their edges, where a crack would show
         // what lies behind as a jump in depth.
         rtcSetSceneFlags(scene_.get(), RTC_SCENE_FLAG_ROBUST);
-        for (const Object& object : scene.objects()) attach(object);
+        for (std::uint32_t i = 0; i < scene.objects().size(); ++i) {
+            if (!wanted || wanted(scene.objects()[i])) attach(scene.objects()[i], i);
+        }
         rtcCommitScene(scene_.get());
         check(device_.get());
     }
@@ -239,12 +242,12 @@ class EmbreeTracer final : public Tracer {
     }
 
   private:
-    void attach(const Object& object) {
+    void attach(const Object& object, std::uint32_t index) {
         const GeometryHandle geometry = std::visit(
             [&](const auto& shape) { return make_geometry(device_.get(), shape); }, object.shape);
         check(device_.get());
         rtcCommitGeometry(geometry.get());
-        rtcAttachGeometry(scene_.get(), geometry.get());
+        rtcAttachGeometryByID(scene_.get(), geometry.get(), index);
     }
 
 #if RTC_VERSION_MAJOR >= 4
@@ -326,8 +329,9 @@ static_assert(RTC_INVALID_GEOMETRY_ID == kNoObject);
 
 }  // namespace
 
-std::unique_ptr<Tracer> make_embree_tracer(const Scene& scene, PacketWidth width) {
-    return std::make_unique<EmbreeTracer>(scene, width);
+std::unique_ptr<Tracer> make_embree_tracer(const Scene& scene, PacketWidth width,
+                                           const ObjectFilter& wanted) {
+    return std::make_unique<EmbreeTracer>(scene, width, wanted);
 }
 
 }  // namespace ink

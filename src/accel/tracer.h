@@ -1,16 +1,16 @@
 #pragma once
 
 #include <cstdint>
-#include <limits>
+#include <functional>
 #include <memory>
 #include <span>
 
+#include "accel/projection.h"
 #include "base/lanes.h"
 #include "scene/scene.h"
 
 namespace ink {
 
-inline constexpr float kInfinity = std::numeric_limits<float>::infinity();
 inline constexpr std::uint32_t kNoObject = 0xFFFFFFFFU;
 
 /// Sixteen rays. All values must be finite, directions of unit length.
@@ -41,7 +41,37 @@ enum class Coherence : std::uint8_t {
     incoherent  ///< they need not
 };
 
-/// Finds the first surface along rays. Safe to call from many threads.
+/// Sixteen points of the screen, pixels.
+struct PointPacket {
+    Lanes<float> x, y;
+};
+
+struct ScreenBox {
+    float left, top, right, bottom;  ///< pixels
+};
+
+/// Traces camera rays of one picture, one thread's share of them.
+class TileTracer {
+  public:
+    virtual ~TileTracer() = default;
+
+    /// What follows lies within `area`, until the next call. All points must.
+    virtual void enter(const ScreenBox& area) = 0;
+
+    /// Traces `rays[k]`, which run through `points[k]`, into `hits[k]`; the spans have equal
+    /// length.
+    virtual void intersect(std::span<const PointPacket> points, std::span<const RayPacket> rays,
+                           std::span<HitPacket> hits) = 0;
+};
+
+/// The scene seen through one camera. Safe to use from many threads.
+class FrameTracer {
+  public:
+    virtual ~FrameTracer() = default;
+    virtual std::unique_ptr<TileTracer> tile_tracer() const = 0;
+};
+
+/// Finds the first surface along rays. Safe to use from many threads.
 class Tracer {
   public:
     virtual ~Tracer() = default;
@@ -49,15 +79,28 @@ class Tracer {
     /// Traces `rays[k]` into `hits[k]`; the spans have equal length.
     virtual void intersect(std::span<const RayPacket> rays, std::span<HitPacket> hits,
                            Coherence coherence) const = 0;
+
+    /// Prepares a picture on up to `threads` threads. The frame must not outlive the tracer. What
+    /// tells it from `intersect` is speed alone.
+    virtual std::unique_ptr<FrameTracer> frame(const Projection& projection, int threads) const;
 };
 
 /// How many rays the kernel is handed at once. `widest` picks what the machine runs natively.
 enum class PacketWidth : std::uint8_t { widest = 0, one = 1, eight = 8, sixteen = 16 };
 
-/// Embree's bounding volume hierarchy over the scene, which must outlive the tracer and keep its
-/// arrays in place: they are shared, not copied. Throws Error when memory runs out.
+using ObjectFilter = std::function<bool(const Object&)>;
+
+/// Embree's bounding volume hierarchy over the scene, or those of its objects that are wanted. The
+/// scene must outlive the tracer and keep its arrays in place: they are shared, not copied. Throws
+/// Error when memory runs out.
 std::unique_ptr<Tracer> make_embree_tracer(const Scene& scene,
-                                           PacketWidth width = PacketWidth::widest);
+                                           PacketWidth width = PacketWidth::widest,
+                                           const ObjectFilter& wanted = {});
+
+/// Spheres and triangles on camera rays by what the screen shows of them (accel/screen_tracer.h),
+/// the rest by Embree, whose hierarchy is built when it is first needed. The scene must outlive the
+/// tracer.
+std::unique_ptr<Tracer> make_tracer(const Scene& scene);
 
 /// Tests every ray against every primitive in double precision: the oracle for the other tracers.
 std::unique_ptr<Tracer> make_brute_force_tracer(const Scene& scene);

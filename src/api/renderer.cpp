@@ -16,7 +16,7 @@ void remove_unfinished_files() noexcept { ink::AtomicFile::remove_unfinished(); 
 
 struct Renderer::Impl {
     explicit Impl(std::vector<ink::Object> objects)
-        : scene(std::move(objects)), tracer(ink::make_embree_tracer(scene)) {}
+        : scene(std::move(objects)), tracer(ink::make_tracer(scene)) {}
 
     ink::Scene scene;
     std::unique_ptr<ink::Tracer> tracer;

@@ -4,6 +4,7 @@
 #include <tbb/global_control.h>
 #include <tbb/info.h>
 #include <tbb/parallel_for.h>
+#include <tbb/parallel_sort.h>
 #include <tbb/task_arena.h>
 
 #include <algorithm>
@@ -42,6 +43,10 @@ void parallel_ranges(std::size_t count, std::size_t grain,
     tbb::parallel_for(
         tbb::blocked_range<std::size_t>(0, count, grain),
         [&](const tbb::blocked_range<std::size_t>& range) { body(range.begin(), range.end()); });
+}
+
+void parallel_sort(std::vector<std::pair<std::uint64_t, std::uint32_t>>& keys) {
+    tbb::parallel_sort(keys);
 }
 
 }  // namespace ink

@@ -1,7 +1,10 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <functional>
+#include <utility>
+#include <vector>
 
 namespace ink {
 
@@ -18,5 +21,8 @@ void parallel_for(std::size_t count, int threads,
 /// threads of the machine. Which ranges there are is not defined.
 void parallel_ranges(std::size_t count, std::size_t grain,
                      const std::function<void(std::size_t, std::size_t)>& body);
+
+/// Sorts ascending on all threads of the machine.
+void parallel_sort(std::vector<std::pair<std::uint64_t, std::uint32_t>>& keys);
 
 }  // namespace ink

@@ -1,8 +1,11 @@
 #pragma once
 
 #include <cmath>
+#include <limits>
 
 namespace ink {
+
+inline constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 /// Three components: a point, a direction or a normal, as the name of the variable says.
 template <class T>

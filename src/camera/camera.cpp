@@ -193,6 +193,16 @@ void Camera::lay_plane(const Scene& scene, Size size) {
         field_.dir_dy = to_float(step_y);
     }
 
+    projection_ = {
+        .right = right_,
+        .down = -up_,
+        .forward = -back_,
+        .start = ahead,
+        .start_depth = orthographic_ ? 0.0 : start_depth_,
+        .centre = {0.5F * static_cast<float>(size.width), 0.5F * static_cast<float>(size.height)},
+        .origin_step = orthographic_ ? pixel : pixel * start_depth_,
+        .slope_step = orthographic_ ? 0.0 : pixel};
+
     constexpr float kMax = std::numeric_limits<float>::max();
     scene_box_ = {kMax, kMax, -kMax, -kMax};
     for (int k = 0; k < 8; ++k) {

@@ -66,10 +66,10 @@ class Camera {
     };
     const RayField& ray_field() const { return field_; }
 
-    /// The part of the screen, in pixels, outside of which no ray can hit the scene.
-    struct ScreenBox {
-        float left, top, right, bottom;
-    };
+    /// The same rays, for tracers.
+    const Projection& projection() const { return projection_; }
+
+    /// The part of the screen outside of which no ray can hit the scene.
     const ScreenBox& scene_box() const { return scene_box_; }
 
     Vec3d world_eye() const { return world_eye_; }
@@ -88,6 +88,7 @@ class Camera {
     double start_depth_ = 0.0;  ///< of the plane that rays start on, along -back
 
     RayField field_;
+    Projection projection_;
     ScreenBox scene_box_{};
     Vec3d world_eye_, world_look_at_;
 };

@@ -9,7 +9,7 @@ namespace ink {
 namespace {
 
 bool near_scene(const Camera& camera, const Block& block, int q) {
-    const Camera::ScreenBox& box = camera.scene_box();
+    const ScreenBox& box = camera.scene_box();
     const float scale = 1.0F / static_cast<float>(q);
     const auto left = static_cast<float>(block.x) * scale;
     const auto top = static_cast<float>(block.y) * scale;
@@ -238,11 +238,11 @@ void LineFinder::sample(std::span<const Vec2f> points, std::span<Sample> out) {
         const std::size_t count = std::min<std::size_t>(kLanes, points.size() - first);
         for (std::size_t n = 0; n < count; ++n) {
             const int i = static_cast<int>(n);
-            out[first + n] = {ids[i],
-                              {values[0][i], values[1][i], values[2][i]},
-                              {values[3][i], values[4][i], values[5][i]},
-                              values[6][i],
-                              edges_.surfaces.ball(point_hits_[k], i)};
+            out[sampler_.order()[first + n]] = {ids[i],
+                                                {values[0][i], values[1][i], values[2][i]},
+                                                {values[3][i], values[4][i], values[5][i]},
+                                                values[6][i],
+                                                edges_.surfaces.ball(point_hits_[k], i)};
         }
     }
 }

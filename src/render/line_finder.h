@@ -23,8 +23,8 @@ class LineFinder {
   public:
     explicit LineFinder(const Edges& edges)
         : edges_(edges),
-          sampler_(edges.pipeline.tracer, edges.pipeline.camera, edges.q),
-          pixel_sampler_(edges.pipeline.tracer, edges.pipeline.camera),
+          sampler_(*edges.pipeline.frame, edges.pipeline.camera, edges.q),
+          pixel_sampler_(*edges.pipeline.frame, edges.pipeline.camera),
           locator_(edges.viewpoint, edges.locate),
           sample_([this](std::span<const Vec2f> points, std::span<Sample> out) {
               sample(points, out);

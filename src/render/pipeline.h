@@ -3,6 +3,7 @@
 #include <chrono>
 #include <cstddef>
 #include <functional>
+#include <memory>
 #include <mutex>
 #include <optional>
 
@@ -22,9 +23,9 @@ struct Pipeline {
     Pipeline(const Scene& all_objects, const Tracer& scene_tracer, const Settings& all,
              Film& target)
         : scene(all_objects),
-          tracer(scene_tracer),
           settings(all),
           camera(scene, all.view, all.size),
+          frame(scene_tracer.frame(camera.projection(), all.threads)),
           shader(scene, camera, all.shading),
           ids(scene, all.ids),
           film(target) {
@@ -32,9 +33,9 @@ struct Pipeline {
     }
 
     const Scene& scene;
-    const Tracer& tracer;
     const Settings& settings;
     Camera camera;
+    std::unique_ptr<FrameTracer> frame;
     Shader shader;
     LineIds ids;
     Film& film;

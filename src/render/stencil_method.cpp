@@ -55,7 +55,7 @@ struct Stencils {
 /// What one thread reuses from tile to tile. Arrays have one entry a block.
 struct Workspace {
     explicit Workspace(const Stencils& stencils)
-        : sampler(stencils.pipeline.tracer, stencils.pipeline.camera),
+        : sampler(*stencils.pipeline.frame, stencils.pipeline.camera),
           stencil_hits(stencils.points.size()) {}
 
     Sampler sampler;

@@ -19,7 +19,7 @@ void sort_blocks(const Tile& tile, const Camera& camera, float reach,
                  std::vector<Block>& near_scene, std::vector<Block>& empty) {
     near_scene.clear();
     empty.clear();
-    const Camera::ScreenBox& box = camera.scene_box();
+    const ScreenBox& box = camera.scene_box();
     for (int y = tile.y0; y < tile.y1; y += kBlockSide) {
         for (int x = tile.x0; x < tile.x1; x += kBlockSide) {
             const auto left = static_cast<float>(x);

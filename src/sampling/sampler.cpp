@@ -10,21 +10,19 @@ namespace ink {
 namespace {
 
 INKTRACE_INLINE void make_block_rays(const Camera& camera, float spacing, Block block, Vec2f offset,
-                                     RayPacket& rays) {
-    Lanes<float> x;
-    Lanes<float> y;
+                                     PointPacket& points, RayPacket& rays) {
     for (int i = 0; i < kLanes; ++i) {
-        x[i] = (static_cast<float>(block.x + i % kBlockSide) + 0.5F) * spacing + offset.x;
-        y[i] = (static_cast<float>(block.y + i / kBlockSide) + 0.5F) * spacing + offset.y;
+        points.x[i] = (static_cast<float>(block.x + i % kBlockSide) + 0.5F) * spacing + offset.x;
+        points.y[i] = (static_cast<float>(block.y + i / kBlockSide) + 0.5F) * spacing + offset.y;
     }
-    camera.make_rays(x, y, rays);
+    camera.make_rays(points.x, points.y, rays);
 }
 
 INKTRACE_MULTIVERSION
 void make_rays(const Camera& camera, float spacing, std::span<const Block> blocks, Vec2f offset,
-               RayPacket* rays) {
+               PointPacket* points, RayPacket* rays) {
     for (std::size_t k = 0; k < blocks.size(); ++k) {
-        make_block_rays(camera, spacing, blocks[k], offset, rays[k]);
+        make_block_rays(camera, spacing, blocks[k], offset, points[k], rays[k]);
         for (int i = 0; i < kLanes; ++i) {
             const bool wanted =
                 i % kBlockSide < blocks[k].columns && i / kBlockSide < blocks[k].rows;
@@ -35,9 +33,9 @@ void make_rays(const Camera& camera, float spacing, std::span<const Block> block
 
 INKTRACE_MULTIVERSION
 void make_rays(const Camera& camera, float spacing, Block block, Vec2f offset,
-               std::span<const Vec2f> stencil, RayPacket* rays) {
+               std::span<const Vec2f> stencil, PointPacket* points, RayPacket* rays) {
     for (std::size_t k = 0; k < stencil.size(); ++k) {
-        make_block_rays(camera, spacing, block, offset + stencil[k], rays[k]);
+        make_block_rays(camera, spacing, block, offset + stencil[k], points[k], rays[k]);
         rays[k].active.fill(-1);
     }
 }
@@ -61,19 +59,62 @@ void face_viewer(const RayPacket* rays, std::span<HitPacket> hits) {
     }
 }
 
+void extend(ScreenBox& box, Vec2f p) {
+    box = {std::min(box.left, p.x), std::min(box.top, p.y), std::max(box.right, p.x),
+           std::max(box.bottom, p.y)};
+}
+
+constexpr ScreenBox kEmptyBox{kInfinity, kInfinity, -kInfinity, -kInfinity};
+
+/// The screen that blocks of a lattice cover.
+ScreenBox bounds(std::span<const Block> blocks, float spacing) {
+    ScreenBox box = kEmptyBox;
+    for (const Block& block : blocks) {
+        extend(box, {static_cast<float>(block.x), static_cast<float>(block.y)});
+        extend(box, {static_cast<float>(block.x + block.columns),
+                     static_cast<float>(block.y + block.rows)});
+    }
+    return {box.left * spacing, box.top * spacing, box.right * spacing, box.bottom * spacing};
+}
+
+ScreenBox bounds(std::span<const Vec2f> points) {
+    ScreenBox box = kEmptyBox;
+    for (const Vec2f p : points) extend(box, p);
+    return box;
+}
+
+ScreenBox sum(const ScreenBox& a, const ScreenBox& b) {
+    return {a.left + b.left, a.top + b.top, a.right + b.right, a.bottom + b.bottom};
+}
+
 }  // namespace
 
+void Sampler::enter(const ScreenBox& area) {
+    area_ = area;
+    tracer_->enter(area);
+}
+
+bool Sampler::entered(const ScreenBox& box) const {
+    return box.left >= area_.left && box.right <= area_.right && box.top >= area_.top &&
+           box.bottom <= area_.bottom;
+}
+
 void Sampler::trace_blocks(std::span<const Block> blocks, Vec2f offset, std::span<HitPacket> hits) {
+    points_.resize(blocks.size());
     packets_.resize(blocks.size());
-    make_rays(camera_, spacing_, blocks, offset, packets_.data());
-    trace(true, hits);
+    make_rays(camera_, spacing_, blocks, offset, points_.data(), packets_.data());
+    const ScreenBox shift{offset.x, offset.y, offset.x, offset.y};
+    trace(sum(bounds(blocks, spacing_), shift), true, hits);
 }
 
 void Sampler::trace_stencils(Block block, Vec2f offset, std::span<const Vec2f> stencil,
                              bool with_normals, std::span<HitPacket> hits) {
+    points_.resize(stencil.size());
     packets_.resize(stencil.size());
-    make_rays(camera_, spacing_, block, offset, stencil, packets_.data());
-    trace(with_normals, hits);
+    make_rays(camera_, spacing_, block, offset, stencil, points_.data(), packets_.data());
+    const ScreenBox shift{offset.x, offset.y, offset.x, offset.y};
+    trace(sum(sum(bounds(std::span(&block, 1), spacing_), shift), bounds(stencil)), with_normals,
+          hits);
 }
 
 void Sampler::turn_to_viewer(std::size_t k, HitPacket& hits) const {
@@ -81,28 +122,55 @@ void Sampler::turn_to_viewer(std::size_t k, HitPacket& hits) const {
 }
 
 void Sampler::trace_points(std::span<const Vec2f> points, std::vector<HitPacket>& hits) {
+    const ScreenBox box = bounds(points);
+    sort_by_place(points, box);
     const std::size_t count = (points.size() + kLanes - 1) / kLanes;
+    points_.resize(count);
     packets_.resize(count);
     hits.resize(count);
-    Lanes<float> x;
-    Lanes<float> y;
     for (std::size_t k = 0; k < count; ++k) {
         const std::size_t first = k * kLanes;
         for (int i = 0; i < kLanes; ++i) {
-            const Vec2f point =
-                points[std::min(first + static_cast<std::size_t>(i), points.size() - 1)];
-            x[i] = point.x;
-            y[i] = point.y;
+            const std::size_t n = std::min(first + static_cast<std::size_t>(i), points.size() - 1);
+            const Vec2f point = points[order_[n]];
+            points_[k].x[i] = point.x;
+            points_[k].y[i] = point.y;
             packets_[k].active[i] = first + static_cast<std::size_t>(i) < points.size() ? -1 : 0;
         }
-        camera_.make_rays(x, y, packets_[k]);
+        camera_.make_rays(points_[k].x, points_[k].y, packets_[k]);
     }
-    trace(true, hits);
+    trace(box, true, hits);
 }
 
-void Sampler::trace(bool with_normals, std::span<HitPacket> hits) {
+/// Counting sort by squares of the screen, row by row; their side suits a packet of points along a
+/// line.
+void Sampler::sort_by_place(std::span<const Vec2f> points, const ScreenBox& box) {
+    constexpr float kSide = 8.0F;
+    const auto square = [](float at, float from) {
+        return static_cast<std::uint32_t>((at - from) * (1.0F / kSide));
+    };
+    const std::uint32_t across = square(box.right, box.left) + 1;
+    const std::uint32_t down = square(box.bottom, box.top) + 1;
+    starts_.assign(std::size_t{across} * down + 1, 0);
+    places_.resize(points.size());
+    order_.resize(points.size());
+    for (std::size_t n = 0; n < points.size(); ++n) {
+        const std::uint32_t row = square(points[n].y, box.top);
+        const std::uint32_t column = square(points[n].x, box.left);
+        // Every other row backwards: squares that follow each other touch.
+        places_[n] = row * across + (row % 2 == 0 ? column : across - 1 - column);
+        ++starts_[places_[n] + 1];
+    }
+    for (std::size_t k = 1; k < starts_.size(); ++k) starts_[k] += starts_[k - 1];
+    for (std::size_t n = 0; n < points.size(); ++n) {
+        order_[starts_[places_[n]]++] = static_cast<std::uint32_t>(n);
+    }
+}
+
+void Sampler::trace(const ScreenBox& box, bool with_normals, std::span<HitPacket> hits) {
     const std::span<HitPacket> traced = hits.first(packets_.size());
-    tracer_.intersect(packets_, traced, Coherence::coherent);
+    if (!entered(box)) enter(box);
+    tracer_->intersect(points_, packets_, traced);
     if (with_normals) face_viewer(packets_.data(), traced);
     for (const RayPacket& packet : packets_) {
         for (int i = 0; i < kLanes; ++i) rays_ += packet.active[i] != 0 ? 1 : 0;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -21,8 +22,14 @@ struct Block {
 /// at (i + 1/2) / per_pixel. Each thread needs one of its own.
 class Sampler {
   public:
-    Sampler(const Tracer& tracer, const Camera& camera, int per_pixel = 1)
-        : tracer_(tracer), camera_(camera), spacing_(1.0F / static_cast<float>(per_pixel)) {}
+    Sampler(const FrameTracer& frame, const Camera& camera, int per_pixel = 1)
+        : tracer_(frame.tile_tracer()),
+          camera_(camera),
+          spacing_(1.0F / static_cast<float>(per_pixel)) {}
+
+    /// The part of the screen that the next calls are about. Needless, but it saves time to name
+    /// it once instead of letting every call find out.
+    void enter(const ScreenBox& area);
 
     /// One packet a block: the rays through every point plus `offset` (pixels). Normals of hits
     /// come back with unit length and facing the ray's origin.
@@ -39,9 +46,11 @@ class Sampler {
     /// where that was not asked for.
     void turn_to_viewer(std::size_t k, HitPacket& hits) const;
 
-    /// Rays through any points of the screen (pixels), sixteen a packet in the order given; the
-    /// last packet is filled up with inactive ones. Normals as in trace_blocks.
+    /// Rays through any points of the screen (pixels), sixteen a packet; the last packet is filled
+    /// up with inactive ones. Points that are close together travel together: lane n, counted over
+    /// all packets, is point order()[n]. Normals as in trace_blocks.
     void trace_points(std::span<const Vec2f> points, std::vector<HitPacket>& hits);
+    std::span<const std::uint32_t> order() const { return order_; }
 
     /// The rays of the last call, packet by packet.
     std::span<const RayPacket> packets() const { return packets_; }
@@ -49,12 +58,18 @@ class Sampler {
     std::size_t rays() const { return rays_; }  ///< traced so far
 
   private:
-    void trace(bool with_normals, std::span<HitPacket> hits);
+    void trace(const ScreenBox& box, bool with_normals, std::span<HitPacket> hits);
+    bool entered(const ScreenBox& box) const;
+    void sort_by_place(std::span<const Vec2f> points, const ScreenBox& box);
 
-    const Tracer& tracer_;
+    std::unique_ptr<TileTracer> tracer_;
     const Camera& camera_;
     float spacing_;
+    ScreenBox area_{kInfinity, kInfinity, -kInfinity, -kInfinity};
+    std::vector<PointPacket> points_;
     std::vector<RayPacket> packets_;
+    std::vector<std::uint32_t> order_;
+    std::vector<std::uint32_t> places_, starts_;  ///< of sort_by_place
     std::size_t rays_ = 0;
 };
 

@@ -1,0 +1,238 @@
+#include "accel/screen_tracer.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "accel/screen_kernels.h"
+#include "accel/screen_packets.h"
+#include "base/parallel.h"
+
+namespace ink {
+
+namespace {
+
+/// Screen bounds of all clusters, sixteen a packet, and above them levels of packets whose lanes
+/// bound a packet of the level below each. The last level is a single packet.
+class BoundsPyramid {
+  public:
+    BoundsPyramid(const Clusters& clusters, const Projection& projection, int threads);
+
+    /// Calls `found(cluster, depth)` for each cluster that reaches into the window.
+    template <class Found>
+    void search(const Window& window, const Found& found) const {
+        if (!levels_.empty()) search(levels_.size() - 1, 0, window, found);
+    }
+
+    void copy(std::uint32_t cluster, BoundsPacket& to, int lane) const {
+        const BoundsPacket& from = levels_[0][cluster / kLanes];
+        const int own = static_cast<int>(cluster % kLanes);
+        to.left[lane] = from.left[own];
+        to.right[lane] = from.right[own];
+        to.top[lane] = from.top[own];
+        to.bottom[lane] = from.bottom[own];
+        to.depth[lane] = from.depth[own];
+    }
+
+  private:
+    template <class Found>
+    void search(std::size_t level, std::size_t packet, const Window& window,
+                const Found& found) const {
+        const BoundsPacket& bounds = levels_[level][packet];
+        for (LaneBits lanes = overlap(bounds, window); lanes != 0; lanes &= lanes - 1) {
+            const int lane = std::countr_zero(lanes);
+            const std::size_t child = packet * kLanes + static_cast<std::size_t>(lane);
+            if (level == 0) {
+                found(static_cast<std::uint32_t>(child), bounds.depth[lane]);
+            } else {
+                search(level - 1, child, window, found);
+            }
+        }
+    }
+
+    std::vector<std::vector<BoundsPacket>> levels_;
+};
+
+std::size_t packets_for(std::size_t count) { return (count + kLanes - 1) / kLanes; }
+
+void set_union(const BoundsPacket& of, BoundsPacket& packet, int lane) {
+    packet.left[lane] = *std::ranges::min_element(of.left);
+    packet.top[lane] = *std::ranges::min_element(of.top);
+    packet.right[lane] = *std::ranges::max_element(of.right);
+    packet.bottom[lane] = *std::ranges::max_element(of.bottom);
+    packet.depth[lane] = *std::ranges::min_element(of.depth);
+}
+
+BoundsPyramid::BoundsPyramid(const Clusters& clusters, const Projection& projection, int threads) {
+    const std::size_t count = clusters.clusters.size();
+    if (count == 0) return;
+    levels_.emplace_back(packets_for(count));
+    constexpr std::size_t kChunk = 256;  // packets that a thread does in one go
+    const auto for_packets = [&](std::vector<BoundsPacket>& level, const auto& body) {
+        parallel_for((level.size() + kChunk - 1) / kChunk, threads,
+                     [&](std::size_t i, std::size_t) {
+                         for (std::size_t k = i * kChunk;
+                              k < std::min((i + 1) * kChunk, level.size()); ++k) {
+                             body(k, level[k]);
+                         }
+                     });
+    };
+    for_packets(levels_[0], [&](std::size_t k, BoundsPacket& packet) {
+        const std::size_t first = k * kLanes;
+        const std::size_t used = std::min<std::size_t>(kLanes, count - first);
+        std::array<Bounds3f, kLanes> boxes;
+        for (std::size_t i = 0; i < used; ++i) boxes[i] = clusters.clusters[first + i].bounds;
+        prepare(projection, std::span(boxes).first(used), packet);
+    });
+    while (levels_.back().size() > 1) {
+        std::vector<BoundsPacket> above(packets_for(levels_.back().size()));
+        const std::vector<BoundsPacket>& below = levels_.back();
+        for_packets(above, [&](std::size_t k, BoundsPacket& packet) {
+            packet = BoundsPacket::none();
+            for (std::size_t i = k * kLanes; i < std::min((k + 1) * kLanes, below.size()); ++i) {
+                set_union(below[i], packet, static_cast<int>(i % kLanes));
+            }
+        });
+        levels_.push_back(std::move(above));
+    }
+}
+
+/// What all tiles share.
+struct View {
+    const Scene& scene;
+    const Clusters& clusters;
+    Projection projection;
+    BoundsPyramid pyramid;
+};
+
+class ScreenTileTracer final : public TileTracer {
+  public:
+    explicit ScreenTileTracer(const View& view) : view_(view) {}
+
+    void enter(const ScreenBox& area) override;
+    void intersect(std::span<const PointPacket> points, std::span<const RayPacket> rays,
+                   std::span<HitPacket> hits) override;
+
+  private:
+    /// A cluster that reaches into the area.
+    struct Candidate {
+        float depth;
+        std::uint32_t cluster;
+        std::uint32_t packet = kNotYet;  ///< index into the packets of its kind
+        std::uint32_t first_record = 0;
+    };
+    static constexpr std::uint32_t kNotYet = 0xFFFFFFFFU;
+
+    void find_front(Front& front);
+    void test(Candidate& candidate, Front& front);
+    template <class Primitives, class Packet>
+    void test(const Primitives& shape, Candidate& candidate, std::vector<Packet>& packets,
+              std::uint32_t& used, Front& front);
+
+    const View& view_;
+    std::vector<Candidate> candidates_;  ///< nearest first
+    std::vector<BoundsPacket> bounds_;   ///< of the candidates
+    // What is made of a candidate when a ray first comes near. Vectors keep their size from area to
+    // area; the counts say how much of them is in use.
+    std::vector<SpherePacket> spheres_;
+    std::vector<TrianglePacket> triangles_;
+    std::vector<HitRecord> records_;
+    std::uint32_t spheres_used_ = 0, triangles_used_ = 0, records_used_ = 0;
+};
+
+void ScreenTileTracer::enter(const ScreenBox& area) {
+    const Vec2f centre = view_.projection.centre;
+    const Window window{area.left - centre.x, area.right - centre.x, area.top - centre.y,
+                        area.bottom - centre.y, kInfinity};
+    candidates_.clear();
+    spheres_used_ = 0;
+    triangles_used_ = 0;
+    records_used_ = 0;
+    view_.pyramid.search(window, [&](std::uint32_t cluster, float depth) {
+        candidates_.push_back({depth, cluster});
+    });
+    std::ranges::sort(candidates_, [](const Candidate& a, const Candidate& b) {
+        return a.depth != b.depth ? a.depth < b.depth : a.cluster < b.cluster;
+    });
+    bounds_.assign(packets_for(candidates_.size()), BoundsPacket::none());
+    for (std::size_t i = 0; i < candidates_.size(); ++i) {
+        view_.pyramid.copy(candidates_[i].cluster, bounds_[i / kLanes],
+                           static_cast<int>(i % kLanes));
+    }
+}
+
+void ScreenTileTracer::intersect(std::span<const PointPacket> points,
+                                 std::span<const RayPacket> rays, std::span<HitPacket> hits) {
+    Front front;
+    for (std::size_t k = 0; k < points.size(); ++k) {
+        front.start(view_.projection, points[k], rays[k].active);
+        find_front(front);
+        resolve(front, rays[k], records_.data(), hits[k]);
+    }
+}
+
+void ScreenTileTracer::find_front(Front& front) {
+    for (std::size_t k = 0; k < bounds_.size(); ++k) {
+        if (!(bounds_[k].depth[0] < front.window.farthest)) return;
+        for (LaneBits lanes = overlap(bounds_[k], front.window); lanes != 0; lanes &= lanes - 1) {
+            const int lane = std::countr_zero(lanes);
+            if (!(bounds_[k].depth[lane] < front.window.farthest)) return;
+            test(candidates_[k * kLanes + static_cast<std::size_t>(lane)], front);
+        }
+    }
+}
+
+void ScreenTileTracer::test(Candidate& candidate, Front& front) {
+    const Cluster& cluster = view_.clusters.clusters[candidate.cluster];
+    const Shape& shape = view_.scene.objects()[cluster.object].shape;
+    if (const auto* spheres = std::get_if<Spheres>(&shape)) {
+        test(*spheres, candidate, spheres_, spheres_used_, front);
+    } else {
+        test(std::get<Mesh>(shape), candidate, triangles_, triangles_used_, front);
+    }
+}
+
+template <class Primitives, class Packet>
+void ScreenTileTracer::test(const Primitives& shape, Candidate& candidate,
+                            std::vector<Packet>& packets, std::uint32_t& used, Front& front) {
+    if (candidate.packet == kNotYet) {
+        if (used == packets.size()) packets.emplace_back();
+        if (records_used_ == records_.size()) records_.resize(records_.size() + kLanes);
+        candidate.packet = used++;
+        candidate.first_record = records_used_;
+        records_used_ += kLanes;
+        const Cluster& cluster = view_.clusters.clusters[candidate.cluster];
+        HitRecord* records = records_.data() + candidate.first_record;
+        prepare(view_.projection, shape,
+                std::span(view_.clusters.order).subspan(cluster.first, cluster.count),
+                packets[candidate.packet], records);
+        for (int i = 0; i < kLanes; ++i) records[i].object = cluster.object;
+    }
+    ink::intersect(view_.projection, packets[candidate.packet], candidate.first_record, front);
+}
+
+class ScreenFrameTracer final : public FrameTracer {
+  public:
+    ScreenFrameTracer(const Scene& scene, const Clusters& clusters, const Projection& projection,
+                      int threads)
+        : view_{scene, clusters, projection, BoundsPyramid(clusters, projection, threads)} {}
+
+    std::unique_ptr<TileTracer> tile_tracer() const override {
+        return std::make_unique<ScreenTileTracer>(view_);
+    }
+
+  private:
+    View view_;
+};
+
+}  // namespace
+
+std::unique_ptr<FrameTracer> make_screen_tracer(const Scene& scene, const Clusters& clusters,
+                                                const Projection& projection, int threads) {
+    return std::make_unique<ScreenFrameTracer>(scene, clusters, projection, threads);
+}
+
+}  // namespace ink

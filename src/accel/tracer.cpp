@@ -1,0 +1,158 @@
+#include "accel/tracer.h"
+
+#include <algorithm>
+#include <mutex>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "accel/clusters.h"
+#include "accel/screen_tracer.h"
+#include "base/multiversion.h"
+
+namespace ink {
+
+namespace {
+
+/// Camera rays like any other rays.
+class PlainTileTracer final : public TileTracer {
+  public:
+    explicit PlainTileTracer(const Tracer& tracer) : tracer_(tracer) {}
+
+    void enter(const ScreenBox& /*area*/) override {}
+    void intersect(std::span<const PointPacket> /*points*/, std::span<const RayPacket> rays,
+                   std::span<HitPacket> hits) override {
+        tracer_.intersect(rays, hits, Coherence::coherent);
+    }
+
+  private:
+    const Tracer& tracer_;
+};
+
+class PlainFrameTracer final : public FrameTracer {
+  public:
+    explicit PlainFrameTracer(const Tracer& tracer) : tracer_(tracer) {}
+    std::unique_ptr<TileTracer> tile_tracer() const override {
+        return std::make_unique<PlainTileTracer>(tracer_);
+    }
+
+  private:
+    const Tracer& tracer_;
+};
+
+/// Two tracers that see different objects; the nearer hit counts, the first's where they are equal.
+class MergedTileTracer final : public TileTracer {
+  public:
+    MergedTileTracer(std::unique_ptr<TileTracer> first, std::unique_ptr<TileTracer> second)
+        : first_(std::move(first)), second_(std::move(second)) {}
+
+    void enter(const ScreenBox& area) override {
+        first_->enter(area);
+        second_->enter(area);
+    }
+    void intersect(std::span<const PointPacket> points, std::span<const RayPacket> rays,
+                   std::span<HitPacket> hits) override {
+        others_.resize(hits.size());
+        first_->intersect(points, rays, hits);
+        second_->intersect(points, rays, others_);
+        for (std::size_t k = 0; k < hits.size(); ++k) take_nearer(others_[k], hits[k]);
+    }
+
+  private:
+    INKTRACE_MULTIVERSION
+    static void take_nearer(const HitPacket& other, HitPacket& hits) {
+        for (int i = 0; i < kLanes; ++i) {
+            const bool nearer = other.t[i] < hits.t[i];
+            hits.t[i] = nearer ? other.t[i] : hits.t[i];
+            hits.normal_x[i] = nearer ? other.normal_x[i] : hits.normal_x[i];
+            hits.normal_y[i] = nearer ? other.normal_y[i] : hits.normal_y[i];
+            hits.normal_z[i] = nearer ? other.normal_z[i] : hits.normal_z[i];
+            hits.u[i] = nearer ? other.u[i] : hits.u[i];
+            hits.v[i] = nearer ? other.v[i] : hits.v[i];
+            hits.primitive[i] = nearer ? other.primitive[i] : hits.primitive[i];
+            hits.object[i] = nearer ? other.object[i] : hits.object[i];
+        }
+    }
+
+    std::unique_ptr<TileTracer> first_, second_;
+    std::vector<HitPacket> others_;
+};
+
+class MergedFrameTracer final : public FrameTracer {
+  public:
+    MergedFrameTracer(std::unique_ptr<FrameTracer> first, std::unique_ptr<FrameTracer> second)
+        : first_(std::move(first)), second_(std::move(second)) {}
+    std::unique_ptr<TileTracer> tile_tracer() const override {
+        return std::make_unique<MergedTileTracer>(first_->tile_tracer(), second_->tile_tracer());
+    }
+
+  private:
+    std::unique_ptr<FrameTracer> first_, second_;
+};
+
+bool has_screen_form(const Object& object) {
+    return std::holds_alternative<Spheres>(object.shape) ||
+           std::holds_alternative<Mesh>(object.shape);
+}
+
+/// Embree's hierarchy, built when it is first asked for.
+class LazyEmbree {
+  public:
+    LazyEmbree(const Scene& scene, ObjectFilter wanted)
+        : scene_(scene), wanted_(std::move(wanted)) {}
+
+    const Tracer& get() const {
+        std::call_once(built_,
+                       [&] { tracer_ = make_embree_tracer(scene_, PacketWidth::widest, wanted_); });
+        return *tracer_;
+    }
+
+  private:
+    const Scene& scene_;
+    ObjectFilter wanted_;
+    mutable std::once_flag built_;
+    mutable std::unique_ptr<Tracer> tracer_;
+};
+
+class SceneTracer final : public Tracer {
+  public:
+    explicit SceneTracer(const Scene& scene)
+        : scene_(scene),
+          clusters_(scene),
+          all_(scene, {}),
+          others_(scene, [](const Object& object) { return !has_screen_form(object); }) {}
+
+    void intersect(std::span<const RayPacket> rays, std::span<HitPacket> hits,
+                   Coherence coherence) const override {
+        all_.get().intersect(rays, hits, coherence);
+    }
+
+    std::unique_ptr<FrameTracer> frame(const Projection& projection, int threads) const override {
+        const auto objects = std::span(scene_.objects());
+        if (!projection.sees_all() || std::ranges::none_of(objects, has_screen_form)) {
+            return all_.get().frame(projection, threads);
+        }
+        auto screen = make_screen_tracer(scene_, clusters_, projection, threads);
+        if (std::ranges::all_of(objects, has_screen_form)) return screen;
+        return std::make_unique<MergedFrameTracer>(std::move(screen),
+                                                   others_.get().frame(projection, threads));
+    }
+
+  private:
+    const Scene& scene_;
+    Clusters clusters_;
+    LazyEmbree all_, others_;
+};
+
+}  // namespace
+
+std::unique_ptr<FrameTracer> Tracer::frame(const Projection& /*projection*/,
+                                           int /*threads*/) const {
+    return std::make_unique<PlainFrameTracer>(*this);
+}
+
+std::unique_ptr<Tracer> make_tracer(const Scene& scene) {
+    return std::make_unique<SceneTracer>(scene);
+}
+
+}  // namespace ink

@@ -1,0 +1,384 @@
+#include "accel/screen_tracer.h"
+
+#include <gtest/gtest.h>
+
+#include <hwy/targets.h>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <memory>
+#include <numbers>
+#include <vector>
+
+#include "camera/camera.h"
+#include "scenes.h"
+
+namespace ink::test {
+namespace {
+
+/// A scene, a camera, and what the screen tracer and brute force see through it.
+class Seen {
+  public:
+    Seen(std::vector<Object> objects, const ViewSettings& view, Size size)
+        : scene_(std::move(objects)),
+          clusters_(scene_),
+          camera_(scene_, view, size),
+          size_(size),
+          frame_(make_screen_tracer(scene_, clusters_, camera_.projection(), 1)),
+          oracle_(make_brute_force_tracer(scene_)) {
+        EXPECT_TRUE(camera_.projection().sees_all());
+    }
+
+    const Camera& camera() const { return camera_; }
+
+    /// Pixel centres, or points at random, sixteen a packet.
+    std::vector<PointPacket> pixels() const {
+        std::vector<PointPacket> points;
+        for (int y = 0; y < size_.height; y += kBlockSide) {
+            for (int x = 0; x < size_.width; x += kBlockSide) {
+                PointPacket packet{};
+                for (int i = 0; i < kLanes; ++i) {
+                    packet.x[i] = static_cast<float>(x + i % kBlockSide) + 0.5F;
+                    packet.y[i] = static_cast<float>(y + i / kBlockSide) + 0.5F;
+                }
+                points.push_back(packet);
+            }
+        }
+        return points;
+    }
+    std::vector<PointPacket> random_points(unsigned seed, std::size_t packets) const {
+        std::mt19937 random(seed);
+        std::vector<PointPacket> points(packets);
+        for (PointPacket& packet : points) {
+            for (int i = 0; i < kLanes; ++i) {
+                packet.x[i] = uniform(random) * static_cast<float>(size_.width);
+                packet.y[i] = uniform(random) * static_cast<float>(size_.height);
+            }
+        }
+        return points;
+    }
+
+    std::vector<HitPacket> trace(const std::vector<PointPacket>& points) const {
+        return trace(points, whole());
+    }
+    std::vector<HitPacket> trace(const std::vector<PointPacket>& points,
+                                 const ScreenBox& area) const {
+        const auto tracer = frame_->tile_tracer();
+        tracer->enter(area);
+        std::vector<HitPacket> hits(points.size());
+        tracer->intersect(points, rays(points), hits);
+        return hits;
+    }
+    std::vector<HitPacket> trace_brute_force(const std::vector<PointPacket>& points) const {
+        std::vector<HitPacket> hits(points.size());
+        oracle_->intersect(rays(points), hits, Coherence::incoherent);
+        return hits;
+    }
+    ScreenBox whole() const {
+        return {0, 0, static_cast<float>(size_.width), static_cast<float>(size_.height)};
+    }
+
+  private:
+    std::vector<RayPacket> rays(const std::vector<PointPacket>& points) const {
+        std::vector<RayPacket> rays(points.size());
+        for (std::size_t k = 0; k < points.size(); ++k) {
+            camera_.make_rays(points[k].x, points[k].y, rays[k]);
+        }
+        return rays;
+    }
+
+    Scene scene_;
+    Clusters clusters_;
+    Camera camera_;
+    Size size_;
+    std::unique_ptr<FrameTracer> frame_;
+    std::unique_ptr<Tracer> oracle_;
+};
+
+bool same_primitive(const HitPacket& a, const HitPacket& b, int i) {
+    return a.object[i] == b.object[i] &&
+           (a.object[i] == kNoObject || a.primitive[i] == b.primitive[i]);
+}
+
+/// Whether brute force sees `wanted` through some point within `reach` pixels.
+bool seen_nearby(const Seen& seen, Vec2f at, float reach, const HitPacket& wanted, int lane) {
+    PointPacket around{};
+    for (int i = 0; i < kLanes; ++i) {
+        const double angle = i * std::numbers::pi / 8.0;
+        around.x[i] = at.x + reach * static_cast<float>(std::cos(angle));
+        around.y[i] = at.y + reach * static_cast<float>(std::sin(angle));
+    }
+    const HitPacket hits = seen.trace_brute_force({around})[0];
+    for (int i = 0; i < kLanes; ++i) {
+        if (hits.object[i] == wanted.object[lane] &&
+            (hits.object[i] == kNoObject || hits.primitive[i] == wanted.primitive[lane])) {
+            return true;
+        }
+    }
+    return false;
+}
+
+struct Tolerance {
+    float pixels = 2e-4F;  ///< to an outline, where either answer is right
+    float t = 1e-5F;       ///< where the surface faces the viewer
+};
+
+/// Every ray hits what brute force hits, unless an outline runs close by.
+void expect_same_hits(const Seen& seen, const std::vector<PointPacket>& points,
+                      Tolerance tolerance = {}) {
+    const auto screen = seen.trace(points);
+    const auto brute = seen.trace_brute_force(points);
+    int hits = 0;
+    int different = 0;
+    for (std::size_t k = 0; k < points.size(); ++k) {
+        for (int i = 0; i < kLanes; ++i) {
+            const Vec2f at{points[k].x[i], points[k].y[i]};
+            if (!same_primitive(screen[k], brute[k], i)) {
+                ++different;
+                EXPECT_TRUE(seen_nearby(seen, at, tolerance.pixels, screen[k], i))
+                    << at.x << ", " << at.y;
+                continue;
+            }
+            if (brute[k].object[i] == kNoObject) {
+                EXPECT_TRUE(std::isinf(screen[k].t[i]));
+                continue;
+            }
+            ++hits;
+            const Vec3f n =
+                normalize(Vec3f{brute[k].normal_x[i], brute[k].normal_y[i], brute[k].normal_z[i]});
+            const float facing = std::abs(dot(n, seen.camera().back()));
+            EXPECT_NEAR(screen[k].t[i], brute[k].t[i], tolerance.t / std::max(facing, 1e-2F));
+            if (facing < 0.1F) continue;
+            const Vec3f m = normalize(
+                Vec3f{screen[k].normal_x[i], screen[k].normal_y[i], screen[k].normal_z[i]});
+            EXPECT_GT(std::abs(dot(m, n)), 1.0F - 1e-3F);
+            EXPECT_NEAR(screen[k].u[i], brute[k].u[i], 2e-3F);
+            EXPECT_NEAR(screen[k].v[i], brute[k].v[i], 2e-3F);
+        }
+    }
+    EXPECT_GT(hits, 0);
+    EXPECT_LE(different, 5 + hits / 1000);
+}
+
+constexpr Size kSmall{128, 128};
+
+TEST(ScreenTracer, HitsWhatBruteForceHitsInPerspective) {
+    for (const double fov : {2.0, 30.0, 70.0}) {
+        ViewSettings view;
+        view.fov_deg = fov;
+        const Seen seen(random_objects(7, 150, 200), view, kSmall);
+        expect_same_hits(seen, seen.pixels());
+        expect_same_hits(seen, seen.random_points(3, 200));
+    }
+}
+
+TEST(ScreenTracer, HitsWhatBruteForceHitsInParallel) {
+    ViewSettings view;
+    view.orthographic = 0.0;
+    const Seen seen(random_objects(8, 150, 200), view, {160, 96});
+    expect_same_hits(seen, seen.pixels());
+    expect_same_hits(seen, seen.random_points(4, 200));
+}
+
+TEST(ScreenTracer, SeesSpheresOfEverySize) {
+    std::vector<Sphere> spheres{{{0, 0, -5}, 4.0F}};  // a wall
+    std::mt19937 random(5);
+    for (int i = 0; i < 300; ++i) {
+        const float radius = std::pow(10.0F, -4.0F * uniform(random));
+        spheres.push_back(
+            {(uniform_point(random) - Vec3f{0.5F, 0.5F, 0.5F}) * 4.0F, radius * 0.4F});
+    }
+    const Seen seen({sphere_object(spheres)}, {}, kSmall);
+    expect_same_hits(seen, seen.random_points(6, 2000));
+}
+
+TEST(ScreenTracer, SeesASphereFromJustBeforeIt) {
+    ViewSettings view;
+    view.eye = Vec3d{0, 0, 1.01};
+    view.look_at = Vec3d{0, 0, 0};
+    const Seen seen({sphere_object({{{0, 0, 0}, 1.0F}})}, view, kSmall);
+    expect_same_hits(seen, seen.pixels());
+}
+
+/// A ball of triangles.
+Object ball(int rings, int sides) {
+    std::vector<Vec3f> vertices{{0, 0, 1}};
+    for (int j = 1; j < rings; ++j) {
+        for (int i = 0; i < sides; ++i) {
+            const double theta = std::numbers::pi * j / rings;
+            const double phi = 2.0 * std::numbers::pi * i / sides;
+            vertices.push_back(to_float(Vec3d{std::sin(theta) * std::cos(phi),
+                                              std::sin(theta) * std::sin(phi), std::cos(theta)}));
+        }
+    }
+    vertices.push_back({0, 0, -1});
+    const auto at = [&](int j, int i) {
+        return static_cast<std::uint32_t>(1 + (j - 1) * sides + i % sides);
+    };
+    const auto last = static_cast<std::uint32_t>(vertices.size() - 1);
+    std::vector<Mesh::Triangle> triangles;
+    for (int i = 0; i < sides; ++i) {
+        triangles.push_back({0, at(1, i), at(1, i + 1)});
+        for (int j = 1; j + 1 < rings; ++j) {
+            triangles.push_back({at(j, i), at(j + 1, i), at(j + 1, i + 1)});
+            triangles.push_back({at(j, i), at(j + 1, i + 1), at(j, i + 1)});
+        }
+        triangles.push_back({at(rings - 1, i), last, at(rings - 1, i + 1)});
+    }
+    return mesh_object(std::move(vertices), std::move(triangles));
+}
+
+TEST(ScreenTracer, LetsNoRayThroughBetweenTriangles) {
+    const Seen seen({ball(24, 48)}, {}, {512, 512});
+    // Points along edges as the camera sees them, and on vertices: found by bisecting between two
+    // neighbouring triangles, until a and b are neighbouring floats.
+    std::vector<PointPacket> points = seen.random_points(9, 300);
+    std::vector<PointPacket> on_edges;
+    for (const PointPacket& packet : points) {
+        PointPacket a = packet;
+        PointPacket b = packet;
+        for (int i = 0; i < kLanes; ++i) {
+            a.x[i] = 200.0F + a.x[i] * 0.2F;
+            a.y[i] = 200.0F + a.y[i] * 0.2F;
+            b.x[i] = a.x[i] + 6.0F;
+            b.y[i] = a.y[i] + 1.0F;
+        }
+        for (int step = 0; step < 20; ++step) {
+            PointPacket middle = a;
+            for (int i = 0; i < kLanes; ++i) {
+                middle.x[i] = 0.5F * (a.x[i] + b.x[i]);
+                middle.y[i] = 0.5F * (a.y[i] + b.y[i]);
+            }
+            const auto hits = seen.trace({a, middle});
+            for (int i = 0; i < kLanes; ++i) {
+                PointPacket& end = same_primitive(hits[0], hits[1], i) ? a : b;
+                end.x[i] = middle.x[i];
+                end.y[i] = middle.y[i];
+            }
+        }
+        on_edges.push_back(a);
+        on_edges.push_back(b);
+    }
+    const auto hits = seen.trace(on_edges);
+    for (const HitPacket& packet : hits) {
+        for (int i = 0; i < kLanes; ++i) {
+            ASSERT_EQ(packet.object[i], 0U);
+            ASSERT_LT(packet.t[i], 1.0F) << "sees the far side";
+        }
+    }
+}
+
+void expect_same_bits(const HitPacket& a, int i, const HitPacket& b, int j) {
+    EXPECT_EQ(a.t[i], b.t[j]);
+    EXPECT_EQ(a.normal_x[i], b.normal_x[j]);
+    EXPECT_EQ(a.normal_y[i], b.normal_y[j]);
+    EXPECT_EQ(a.normal_z[i], b.normal_z[j]);
+    EXPECT_EQ(a.u[i], b.u[j]);
+    EXPECT_EQ(a.v[i], b.v[j]);
+    EXPECT_EQ(a.primitive[i], b.primitive[j]);
+    EXPECT_EQ(a.object[i], b.object[j]);
+}
+
+TEST(ScreenTracer, GivesAPointOneAnswerWhateverItsCompanyAndArea) {
+    const Seen seen(random_objects(17, 400, 400), {}, kSmall);
+    const auto points = seen.pixels();
+    const auto all = seen.trace(points);
+    for (std::size_t k = 0; k < points.size(); k += 7) {
+        // The same points, each among fifteen of other blocks, in an area of their own.
+        PointPacket mixed = points[(k * 31 + 5) % points.size()];
+        const int lane = static_cast<int>(k % kLanes);
+        mixed.x[lane] = points[k].x[lane];
+        mixed.y[lane] = points[k].y[lane];
+        expect_same_bits(seen.trace({mixed})[0], lane, all[k], lane);
+        const ScreenBox area{points[k].x[0], points[k].y[0], points[k].x[kLanes - 1],
+                             points[k].y[kLanes - 1]};
+        const HitPacket alone = seen.trace({points[k]}, area)[0];
+        for (int i = 0; i < kLanes; ++i) expect_same_bits(alone, i, all[k], i);
+    }
+}
+
+TEST(ScreenTracer, GivesTheSameBitsOnEveryInstructionSet) {
+    const Seen seen(random_objects(21, 300, 300), {}, kSmall);
+    const auto points = seen.pixels();
+    const auto native = seen.trace(points);
+    int sets = 0;
+    for (const std::int64_t target : {HWY_SSSE3, HWY_SSE4, HWY_AVX2, HWY_AVX3}) {
+        hwy::SetSupportedTargetsForTest(0);
+        if ((hwy::SupportedTargets() & target) == 0) continue;
+        hwy::SetSupportedTargetsForTest(target);
+        const auto hits = seen.trace(points);
+        ++sets;
+        for (std::size_t k = 0; k < points.size(); ++k) {
+            for (int i = 0; i < kLanes; ++i) expect_same_bits(hits[k], i, native[k], i);
+        }
+    }
+    hwy::SetSupportedTargetsForTest(0);
+    EXPECT_GE(sets, 1);
+}
+
+TEST(ScreenTracer, LeavesInactiveRaysAlone) {
+    const Seen seen(random_objects(7, 100, 100), {}, kSmall);
+    const Scene scene(random_objects(7, 100, 100));
+    const auto tracer = make_tracer(scene);
+    const auto frame = tracer->frame(seen.camera().projection(), 1);
+    const auto tile = frame->tile_tracer();
+    tile->enter(seen.whole());
+    const std::vector<PointPacket> points = seen.pixels();
+    for (std::size_t k = 0; k < points.size(); k += 11) {
+        RayPacket rays{};
+        seen.camera().make_rays(points[k].x, points[k].y, rays);
+        for (int i = 0; i < kLanes; ++i) rays.active[i] = i % 3 == 0 ? 0 : -1;
+        HitPacket hits;
+        tile->intersect(std::span(&points[k], 1), std::span(&rays, 1), std::span(&hits, 1));
+        const HitPacket all = seen.trace({points[k]})[0];
+        for (int i = 0; i < kLanes; ++i) {
+            EXPECT_EQ(hits.object[i], i % 3 == 0 ? kNoObject : all.object[i]);
+            EXPECT_EQ(hits.t[i], i % 3 == 0 ? kInfinity : all.t[i]);
+        }
+    }
+}
+
+TEST(SceneTracer, MergesWhatOnlyEmbreeTracesByDepth) {
+    std::vector<Object> objects = random_objects(12, 60, 60);
+    std::mt19937 random(3);
+    Glyphs boxes{.shape = {.kind = GlyphKind::box}, .placements = {}, .colors = {}, .parts = {}};
+    for (int i = 0; i < 60; ++i) {
+        boxes.placements.push_back(
+            {{0.1F, 0, 0}, {0, 0.05F, 0.05F}, {0, -0.05F, 0.05F}, uniform_point(random)});
+    }
+    Object object;
+    object.kind = ObjectKind::shape;
+    object.shape = std::move(boxes);
+    objects.insert(objects.begin() + 1, std::move(object));
+    const Scene scene(std::move(objects));
+    const Camera camera(scene, {}, kSmall);
+    const auto embree = make_embree_tracer(scene);
+    const auto tracer = make_tracer(scene);
+    const auto frame = tracer->frame(camera.projection(), 1);
+    const auto tile = frame->tile_tracer();
+    tile->enter({0, 0, 128, 128});
+    std::array<int, 3> seen{};
+    int different = 0;
+    for (int k = 0; k < 32 * 32; ++k) {
+        PointPacket points{};
+        RayPacket rays;
+        for (int i = 0; i < kLanes; ++i) {
+            points.x[i] = static_cast<float>(k % 32 * 4 + i % 4) + 0.5F;
+            points.y[i] = static_cast<float>(k / 32 * 4 + i / 4) + 0.5F;
+        }
+        camera.make_rays(points.x, points.y, rays);
+        HitPacket merged;
+        HitPacket whole;
+        tile->intersect(std::span(&points, 1), std::span(&rays, 1), std::span(&merged, 1));
+        embree->intersect(std::span(&rays, 1), std::span(&whole, 1), Coherence::incoherent);
+        for (int i = 0; i < kLanes; ++i) {
+            different += same_primitive(merged, whole, i) ? 0 : 1;
+            if (whole.object[i] != kNoObject) ++seen[whole.object[i]];
+        }
+    }
+    EXPECT_LE(different, 3);
+    for (const int count : seen) EXPECT_GT(count, 100);
+}
+
+}  // namespace
+}  // namespace ink::test
