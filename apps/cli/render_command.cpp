@@ -23,6 +23,7 @@ namespace {
 
 struct RenderArguments {
     std::vector<std::string> inputs;
+    std::string scene;  ///< a scene file, drawn before the inputs
     std::string output;
     std::string stats_file;
     int repeat = 1;
@@ -142,12 +143,35 @@ void run(const RenderArguments& arguments) {
     }
 }
 
+/// Settings of scene files, and over them the flags that were given.
+void take_scene_settings(const CLI::App& command, RenderArguments& arguments) {
+    Settings settings;
+    bool any = false;
+    for (const std::string& input : arguments.inputs) {
+        for (const auto& [name, value] : scene_file_settings(input)) {
+            settings.set(name, value);
+            any = true;
+        }
+    }
+    if (!any) return;
+    for (const SettingInfo& info : all_settings()) {
+        const CLI::Option* flag = command.get_option_no_throw("--" + info.name);
+        if (flag != nullptr && flag->count() > 0) settings.set(info.name, flag->results().back());
+    }
+    arguments.settings = settings;
+}
+
 }  // namespace
 
 void add_render_command(CLI::App& app) {
     CLI::App* command = app.add_subcommand("render", "Draw files as one picture");
     const auto arguments = std::make_shared<RenderArguments>();
-    command->add_option("INPUT", arguments->inputs, "Files to draw together")->required();
+    command->add_option("INPUT", arguments->inputs, "Files to draw together");
+    command
+        ->add_option("--scene", arguments->scene,
+                     "Scene file to draw: objects and settings as JSON; flags go before it")
+        ->type_name("FILE")
+        ->group("Input");
     command
         ->add_option("-o,--output", arguments->output, "Picture to write: .png, .jpg, .tiff, .exr")
         ->type_name("FILE")
@@ -165,7 +189,14 @@ void add_render_command(CLI::App& app) {
         ->group("Run");
     command->footer(
         "Example: inktrace render 1crn.pdb -o crambin.png --line-width 0.5pt --dpi 300");
-    command->callback([arguments] { run(*arguments); });
+    command->callback([command, arguments] {
+        if (!arguments->scene.empty()) {
+            arguments->inputs.insert(arguments->inputs.begin(), arguments->scene);
+        }
+        if (arguments->inputs.empty()) throw CLI::RequiredError("INPUT");
+        take_scene_settings(*command, *arguments);
+        run(*arguments);
+    });
 }
 
 }  // namespace inktrace::cli

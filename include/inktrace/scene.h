@@ -45,7 +45,8 @@ class Scene {
     Scene& operator=(Scene&&) noexcept;
     ~Scene();
 
-    /// Adds what a file holds; the format is told from the extension. `frame` counts from 0.
+    /// Adds what a file holds; the format is told from the extension. `frame` counts from 0. Of a
+    /// scene file, its objects: its settings are for the caller to take (scene_file_settings).
     /// Throws Error (input).
     FileInfo load(const std::filesystem::path& file, int frame = 0);
     /// The same, by settings of topic "Input": frame, selection, colours and so on. Throws Error
@@ -72,6 +73,11 @@ class Scene {
   private:
     std::unique_ptr<Impl> impl_;
 };
+
+/// The settings that a scene file (.json) asks for, names and values in order, for `Settings::set`;
+/// none of any other file. Throws Error (input), with line and key.
+std::vector<std::pair<std::string, std::string>> scene_file_settings(
+    const std::filesystem::path& file);
 
 /// The formats that `Scene::load` reads, each with its extensions: ("PDB", ".pdb .ent").
 std::vector<std::pair<std::string, std::string>> input_formats();

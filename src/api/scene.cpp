@@ -8,6 +8,7 @@
 
 #include "api/guard.h"
 #include "api/impl.h"
+#include "api/scene_file.h"
 #include "io/reader.h"
 #include "scene/mesh.h"
 
@@ -139,7 +140,10 @@ FileInfo Scene::load(const std::filesystem::path& file, const Settings& settings
     return ink::guard([&] {
         const ink::Settings& inner = settings.impl().settings;
         ink::FileContents contents =
-            ink::read_file(file, {.frame = inner.frame, .data = inner.data, .summarize = true});
+            ink::is_scene_file(file)
+                ? ink::read_scene_file(file, inner)
+                : ink::read_file(file,
+                                 {.frame = inner.frame, .data = inner.data, .summarize = true});
         FileInfo info = describe(file, contents);
         std::ranges::move(contents.objects, std::back_inserter(impl_->objects));
         return info;
@@ -167,7 +171,16 @@ std::vector<std::pair<std::string, std::string>> input_formats() {
     for (const ink::Reader& reader : ink::readers()) {
         formats.emplace_back(reader.name, fmt::format(".{}", fmt::join(reader.extensions, " .")));
     }
+    formats.emplace_back("scene", ".json");
     return formats;
+}
+
+std::vector<std::pair<std::string, std::string>> scene_file_settings(
+    const std::filesystem::path& file) {
+    return ink::guard([&] {
+        return ink::is_scene_file(file) ? ink::read_scene_settings(file)
+                                        : std::vector<std::pair<std::string, std::string>>();
+    });
 }
 
 }  // namespace inktrace
