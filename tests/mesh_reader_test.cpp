@@ -393,8 +393,6 @@ TEST(PlyReader, NamesThePlaceAndTheRemedy) {
               "a.ply:31: the data end or are unreadable in face 12 of 12; wa");
     EXPECT_EQ(error("2.000000 0.000000 0", "2.000000 nan 0").substr(0, 40),
               "a.ply:12: vertex 1 lies at (2, nan, 0), ");
-    EXPECT_EQ(error("face 12", "face 0"),
-              "a.ply: holds points, no faces; export the surface with its faces");
     EXPECT_EQ(error_of("a.ply", "\x89PNG\n"),
               "a.ply: is not a PLY file (its first line is not 'ply'); check the file's name");
     EXPECT_EQ(error_of("a.ply", "ply\nformat ascii 1.0\nelement vertex 3\n"),

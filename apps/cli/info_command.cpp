@@ -61,8 +61,7 @@ void print_text(const FileInfo& info) {
 void run(const InfoArguments& arguments) {
     auto list = nlohmann::ordered_json::array();
     for (const std::string& input : arguments.inputs) {
-        Scene scene;
-        const FileInfo info = scene.load(input, arguments.settings);
+        const FileInfo info = inspect(input, arguments.settings);
         if (arguments.json) {
             list.push_back(to_json(info));
         } else {

@@ -19,7 +19,9 @@ namespace inktrace {
 struct FieldInfo {
     std::string name;
     std::size_t components = 1;
-    double least = 0.0;  ///< of all components; greater than `most` where no value is finite
+    /// Of all components; greater than `most` where no value is finite, or where none was looked
+    /// at.
+    double least = 0.0;
     double most = 0.0;
 };
 
@@ -78,6 +80,10 @@ class Scene {
 /// none of any other file. Throws Error (input), with line and key.
 std::vector<std::pair<std::string, std::string>> scene_file_settings(
     const std::filesystem::path& file);
+
+/// What a file holds, with the ranges of its fields, by settings of topic "Input". Throws Error
+/// (input).
+FileInfo inspect(const std::filesystem::path& file, const Settings& settings = {});
 
 /// The formats that `Scene::load` reads, each with its extensions: ("PDB", ".pdb .ent").
 std::vector<std::pair<std::string, std::string>> input_formats();

@@ -125,6 +125,13 @@ FileInfo describe(const std::filesystem::path& file, const ink::FileContents& co
     return info;
 }
 
+ink::FileContents read_any(const std::filesystem::path& file, const ink::Settings& settings,
+                           bool summarize) {
+    if (ink::is_scene_file(file)) return ink::read_scene_file(file, settings);
+    return ink::read_file(file,
+                          {.frame = settings.frame, .data = settings.data, .summarize = summarize});
+}
+
 }  // namespace
 
 Scene::Scene() : impl_(std::make_unique<Impl>()) {}
@@ -139,11 +146,7 @@ FileInfo Scene::load(const std::filesystem::path& file, int frame) {
 FileInfo Scene::load(const std::filesystem::path& file, const Settings& settings) {
     return ink::guard([&] {
         const ink::Settings& inner = settings.impl().settings;
-        ink::FileContents contents =
-            ink::is_scene_file(file)
-                ? ink::read_scene_file(file, inner)
-                : ink::read_file(file,
-                                 {.frame = inner.frame, .data = inner.data, .summarize = true});
+        ink::FileContents contents = read_any(file, inner, false);
         FileInfo info = describe(file, contents);
         std::ranges::move(contents.objects, std::back_inserter(impl_->objects));
         return info;
@@ -164,6 +167,11 @@ std::size_t Scene::primitive_count() const {
     std::size_t count = 0;
     for (const ink::Object& object : impl_->objects) count += object.primitive_count();
     return count;
+}
+
+FileInfo inspect(const std::filesystem::path& file, const Settings& settings) {
+    return ink::guard(
+        [&] { return describe(file, read_any(file, settings.impl().settings, true)); });
 }
 
 std::vector<std::pair<std::string, std::string>> input_formats() {

@@ -238,14 +238,12 @@ FileContents read_obj(const Path& file, const ReadOptions& /*options*/) {
     scan.run();
     const std::optional<Vec3d> centre = scan.far_centre();
     if (centre) text = moved(text, *centre);
-    std::optional<PolygonMesh> mesh = assimp_mesh(file, text, ".obj");
-    if (!mesh) throw InputError(file, "cannot be read as a Wavefront OBJ file; export it again");
-    mesh->format = "OBJ";
+    PolygonMesh mesh = assimp_mesh(file, text, ".obj", "OBJ");
     if (centre) {
-        mesh->origin = mesh->origin + *centre;
-        mesh->single_precision = false;
+        mesh.origin = mesh.origin + *centre;
+        mesh.single_precision = false;
     }
-    return mesh_contents(file, std::move(*mesh));
+    return mesh_contents(file, std::move(mesh));
 }
 
 }  // namespace

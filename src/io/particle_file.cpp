@@ -1,0 +1,232 @@
+#include "io/particle_file.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "base/error.h"
+#include "base/text.h"
+#include "io/file_text.h"
+#include "io/polygon_mesh.h"
+
+namespace ink {
+
+namespace {
+
+constexpr double kMax = std::numeric_limits<double>::max();
+
+/// Names of coordinate columns, in lower case, best first.
+struct AxisNames {
+    std::array<std::string_view, 3> names;
+    bool scaled = false;
+};
+constexpr AxisNames kAxes[] = {{{"x", "y", "z"}},
+                               {{"xu", "yu", "zu"}},
+                               {{"xs", "ys", "zs"}, true},
+                               {{"xsu", "ysu", "zsu"}, true},
+                               {{"points:0", "points:1", "points:2"}},
+                               {{"points_0", "points_1", "points_2"}},
+                               {{"pos_x", "pos_y", "pos_z"}},
+                               {{"px", "py", "pz"}},
+                               {{"coord_x", "coord_y", "coord_z"}}};
+
+/// "X [mm]" and "x(m)" are x.
+std::string plain_name(std::string_view name) {
+    return to_lower(trim(name.substr(0, name.find_first_of("[("))));
+}
+
+/// The next word of a row, cut off its front; at blanks, runs of them count as one. False at the
+/// end of the row.
+bool take_field(std::string_view& row, char separator, std::string_view& word) {
+    if (separator == ' ') {
+        word = take_word(row);
+        return !word.empty();
+    }
+    if (row.data() == nullptr) return false;
+    const std::size_t end = row.find(separator);
+    word = trim(row.substr(0, end));
+    row = end == std::string_view::npos ? std::string_view() : row.substr(end + 1);
+    return true;
+}
+
+bool parse_float(std::string_view word, double& value) {
+    if (word.size() >= 2 && word.front() == '"' && word.back() == '"') {
+        word = word.substr(1, word.size() - 2);
+    }
+    if (word.starts_with('+')) word.remove_prefix(1);
+    const auto result = std::from_chars(word.data(), word.data() + word.size(), value);
+    if (result.ec == std::errc::result_out_of_range) {
+        // Too small is 0 for all that can be seen; too large is no place or size.
+        const bool small =
+            word.find("e-") != std::string_view::npos || word.find("E-") != std::string_view::npos;
+        value = small ? 0.0 : std::numeric_limits<double>::infinity();
+        return true;
+    }
+    return result.ec == std::errc{} && result.ptr == word.data() + word.size();
+}
+
+}  // namespace
+
+FileContents particle_contents(const std::filesystem::path& file, std::string_view format,
+                               Particles particles, FileContents contents,
+                               const ReadOptions& options) {
+    if (particles.count() == 0) {
+        throw InputError(file, "holds no particles; a file with coordinates is needed");
+    }
+    particles.name = model_name(file);
+    contents.format = format;
+    contents.counts.emplace(contents.counts.begin(), "particles", particles.count());
+    contents.objects = represent(std::move(particles), options.data, contents.warnings);
+    return contents;
+}
+
+ParticleColumns::ParticleColumns(const std::filesystem::path& file, std::vector<std::string> names,
+                                 const ReadOptions& options)
+    : summarize_(options.summarize) {
+    for (std::string& name : names)
+        columns_.push_back({std::move(name), false, -1, {}, kMax, -kMax});
+    find_axes(file);
+    for (const Column& column : columns_) {
+        if (is_radius_name(column.name) || is_diameter_name(column.name)) {
+            if (options.data.radius.empty()) request(column.name);
+        }
+    }
+    for (const std::string& name : requested_fields(options.data)) request(name);
+    for (std::size_t c = 0; c < columns_.size(); ++c) {
+        Column& column = columns_[c];
+        column.needed = summarize_ || column.axis >= 0 || !column.destinations.empty();
+        if (column.needed) last_needed_ = c;
+    }
+}
+
+void ParticleColumns::find_axes(const std::filesystem::path& file) {
+    for (int axis = 0; axis < 3; ++axis) {
+        bool found = false;
+        for (const AxisNames& choice : kAxes) {
+            const std::string_view wanted = choice.names[static_cast<std::size_t>(axis)];
+            const auto column = std::ranges::find_if(
+                columns_, [&](const Column& c) { return plain_name(c.name) == wanted; });
+            if (column == columns_.end()) continue;
+            column->axis = axis;
+            scaled_[static_cast<std::size_t>(axis)] = choice.scaled;
+            found = true;
+            break;
+        }
+        if (found) continue;
+        std::string all;
+        for (const Column& column : columns_) all += (all.empty() ? "" : ", ") + column.name;
+        throw InputError(file, fmt::format("has no column '{}' among {}; name the coordinates x, y "
+                                           "and z",
+                                           "xyz"[axis], excerpt(all)));
+    }
+}
+
+/// The columns of a vector: vx vy vz for "v", c_s[1] c_s[2] for "c_s", v:0 v:1 v:2 for "v".
+std::vector<std::size_t> ParticleColumns::vector_columns(const std::string& name) const {
+    const auto index = [&](const std::string& column) -> std::optional<std::size_t> {
+        const auto found = std::ranges::find(columns_, column, &Column::name);
+        if (found == columns_.end()) return std::nullopt;
+        return static_cast<std::size_t>(found - columns_.begin());
+    };
+    const auto series = [&](auto component_name, int first) {
+        std::vector<std::size_t> found;
+        for (int k = first;; ++k) {
+            const auto column = index(component_name(k));
+            if (!column) return found;
+            found.push_back(*column);
+        }
+    };
+    const std::array candidates{
+        series([&](int k) { return fmt::format("{}{}", name, k < 3 ? "xyz"[k] : '?'); }, 0),
+        series([&](int k) { return fmt::format("{}_{}", name, k < 3 ? "xyz"[k] : '?'); }, 0),
+        series([&](int k) { return fmt::format("{}[{}]", name, k); }, 1),
+        series([&](int k) { return fmt::format("{}:{}", name, k); }, 0),
+        series([&](int k) { return fmt::format("{}_{}", name, k); }, 0)};
+    for (const auto& columns : candidates) {
+        if (columns.size() > 1) return columns;
+    }
+    return {};
+}
+
+void ParticleColumns::request(const std::string& name) {
+    for (const Field& field : particles_.fields) {
+        if (field.name == name) return;
+    }
+    const auto column = std::ranges::find(columns_, name, &Column::name);
+    if (column != columns_.end()) {
+        keep(name, {static_cast<std::size_t>(column - columns_.begin())});
+        return;
+    }
+    if (const auto columns = vector_columns(name); !columns.empty()) {
+        keep(name, columns);
+        return;
+    }
+    // "v.x" of the columns vx, vy, vz.
+    const std::size_t dot = name.rfind('.');
+    if (dot != std::string::npos && dot > 0) request(name.substr(0, dot));
+}
+
+void ParticleColumns::keep(std::string_view field, const std::vector<std::size_t>& columns) {
+    particles_.fields.push_back({std::string(field), columns.size(), {}});
+    for (std::size_t component = 0; component < columns.size(); ++component) {
+        columns_[columns[component]].destinations.push_back(slots_.size());
+        slots_.push_back({particles_.fields.size() - 1, component});
+    }
+}
+
+void ParticleColumns::reserve(std::size_t rows) {
+    particles_.positions.reserve(rows);
+    for (Field& field : particles_.fields) field.values.reserve(rows * field.components);
+}
+
+bool ParticleColumns::add_row(std::string_view row, char separator, std::string& problem) {
+    std::array<double, 3> place{};
+    for (Field& field : particles_.fields)
+        field.values.resize(field.values.size() + field.components);
+    for (std::size_t c = 0; c <= last_needed_; ++c) {
+        Column& column = columns_[c];
+        std::string_view word;
+        if (!take_field(row, separator, word)) {
+            problem = fmt::format("the row has {} of {} columns", c, columns_.size());
+            return false;
+        }
+        if (!column.needed) continue;
+        double value = 0.0;
+        if (!parse_float(word, value)) {
+            // A column that is only looked at may hold words.
+            if (column.axis < 0 && column.destinations.empty()) continue;
+            problem = fmt::format("column '{}' is {}, not a number", column.name, excerpt(word));
+            return false;
+        }
+        if (column.axis >= 0) place[static_cast<std::size_t>(column.axis)] = value;
+        for (const std::size_t d : column.destinations) {
+            Field& field = particles_.fields[slots_[d].field];
+            field.values[field.values.size() - field.components + slots_[d].component] =
+                static_cast<float>(value);
+        }
+        if (summarize_ && std::isfinite(value)) {
+            column.least = std::min(column.least, value);
+            column.most = std::max(column.most, value);
+        }
+    }
+    const Vec3d p{place[0], place[1], place[2]};
+    if (particles_.positions.empty() && std::isfinite(p.x + p.y + p.z)) particles_.origin = p;
+    particles_.positions.push_back(to_float(p - particles_.origin));
+    return true;
+}
+
+std::vector<FieldSummary> ParticleColumns::summaries() const {
+    std::vector<FieldSummary> summaries;
+    for (const Column& column : columns_) {
+        if (column.axis >= 0) continue;
+        summaries.push_back({column.name, 1, column.least, column.most});
+    }
+    return summaries;
+}
+
+}  // namespace ink

@@ -1,0 +1,64 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "io/reader.h"
+#include "scene/particles.h"
+
+// What the readers of particles share.
+namespace ink {
+
+/// The particles as a file's contents. Throws InputError where there are none, and Error where the
+/// options ask for what is not there.
+FileContents particle_contents(const std::filesystem::path& file, std::string_view format,
+                               Particles particles, FileContents contents,
+                               const ReadOptions& options);
+
+/// Rows of numbers under named columns, of which only those are kept that are drawn.
+class ParticleColumns {
+  public:
+    /// Throws InputError where there are no columns x, y and z.
+    ParticleColumns(const std::filesystem::path& file, std::vector<std::string> names,
+                    const ReadOptions& options);
+
+    void reserve(std::size_t rows);
+    /// Words end at `separator` (' ': at blanks). False where a word that is needed is missing or
+    /// not a number; `problem` then says so.
+    bool add_row(std::string_view row, char separator, std::string& problem);
+
+    /// Coordinates that are fractions of a box, as LAMMPS writes them: which of x, y, z are.
+    std::array<bool, 3> scaled() const { return scaled_; }
+    Particles& particles() { return particles_; }
+    std::vector<FieldSummary> summaries() const;
+
+  private:
+    struct Column {
+        std::string name;
+        bool needed = false;
+        int axis = -1;                          ///< 0, 1, 2: a coordinate
+        std::vector<std::size_t> destinations;  ///< places in `slots_`
+        double least, most;                     ///< of the finite values
+    };
+    struct Slot {
+        std::size_t field, component;
+    };
+
+    void find_axes(const std::filesystem::path& file);
+    void request(const std::string& name);
+    void keep(std::string_view field, const std::vector<std::size_t>& columns);
+    std::vector<std::size_t> vector_columns(const std::string& name) const;
+
+    std::vector<Column> columns_;
+    std::vector<Slot> slots_;
+    std::size_t last_needed_ = 0;
+    bool summarize_ = false;
+    std::array<bool, 3> scaled_{};
+    Particles particles_;
+};
+
+}  // namespace ink
