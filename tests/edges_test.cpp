@@ -228,6 +228,7 @@ TEST(LinesAtTheBorder, AreThoseOfALargerPicture) {
         for (const double width : {2.0, 20.0}) {
             Settings settings = plan_view({64, 48}, width);
             settings.lattice = q;
+            settings.line_density = 1.0;  // how dense lines are outside of a picture is not known
             const Film small = draw(scene, settings);
             settings.size = {128, 112};
             settings.view.orthographic = 112.0;
@@ -330,6 +331,46 @@ TEST_P(PapersLook, IsThatOfStencilsWithManyRings) {
 }
 
 INSTANTIATE_TEST_SUITE_P(OfMetric, PapersLook, testing::Values("linear", "power:10"));
+
+// Lines denser than they are wide
+
+/// Spheres side by side in a square of 100 x 100, in a picture of `side` pixels.
+std::vector<float> ink_of_packed_spheres(int side, double density, double width_px = 3.0) {
+    std::mt19937 random(3);
+    std::vector<Sphere> spheres;
+    for (int k = 0; k < 20000; ++k) {
+        const Vec3f p = uniform_point(random) - Vec3f{0.5F, 0.5F, 0.5F};
+        spheres.push_back({{p.x * 120.0F, p.y * 120.0F, p.z * 4.0F}, 1.2F});
+    }
+    Settings settings = plan_view({side, side}, width_px);
+    settings.view.orthographic = 100.0;
+    settings.line_density = density;
+    return plane(draw(Scene({sphere_object(spheres)}), settings), "line.A");
+}
+
+double mean(const std::vector<float>& values) {
+    double sum = 0.0;
+    for (const float value : values) sum += value;
+    return sum / static_cast<double>(values.size());
+}
+
+TEST(DenseLines, BecomeAToneHoweverSmallThePicture) {
+    double before = 0.0;
+    for (const int side : {600, 400, 280, 200, 140, 100, 70, 50, 35}) {
+        const double tone = mean(ink_of_packed_spheres(side, 0.75));
+        EXPECT_LT(tone, 0.7) << side;
+        EXPECT_GT(tone, 0.2) << side;
+        // No step in tone between pictures of similar size.
+        EXPECT_NEAR(tone, before > 0.0 ? before : tone, 0.12) << side;
+        before = tone;
+    }
+    EXPECT_GT(mean(ink_of_packed_spheres(100, 1.0)), 0.95);
+}
+
+TEST(DenseLines, KeepTheirWidthWhereThereIsRoom) {
+    const std::vector<float> sparse = ink_of_packed_spheres(1400, 0.75, 1.5);
+    EXPECT_EQ(sparse, ink_of_packed_spheres(1400, 1.0, 1.5));
+}
 
 // Invariances
 
@@ -621,6 +662,27 @@ TEST(Box, HasCreasesAtItsThreeInnerEdgesAndASilhouetteAroundThem) {
             EXPECT_NEAR(total("crease"), 3 * edge * 2, 6) << "q " << q;
         }
     }
+}
+
+/// A cube of side 2 as one glyph.
+Object box_glyph() {
+    Object object;
+    object.name = "box";
+    object.kind = ObjectKind::shape;
+    Glyphs glyphs;
+    glyphs.shape.kind = GlyphKind::box;
+    glyphs.placements.push_back({});
+    object.shape = std::move(glyphs);
+    return object;
+}
+
+TEST(BoxGlyph, ShowsTheThreeEdgesThatItsMeshShows) {
+    Settings settings;
+    settings.size = {128, 128};
+    settings.view.view = View::iso;
+    settings.aovs = {Aov::lines};
+    set(settings, "lines", "crease");
+    EXPECT_GT(mean(plane(draw(Scene({box_glyph()}), settings), "line.A")), 0.02);
 }
 
 }  // namespace

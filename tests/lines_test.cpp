@@ -210,7 +210,7 @@ Found search(const World& world, int q, int side = kSide) {
 /// Ink of the segments on a tile of side x side pixels.
 std::vector<double> draw(const std::vector<Segment>& segments, double width, int side = kSide) {
     InkSettings settings;
-    settings.styles.fill({static_cast<float>(width), {0, 0, 0}, 1.0F});
+    settings.styles.assign(kLineTypes, {static_cast<float>(width), {0, 0, 0}, 1.0F});
     InkTile tile(settings);
     tile.begin(0, 0, side, side);
     for (const Segment& segment : segments) tile.draw(segment);
@@ -1260,7 +1260,7 @@ TEST(Lines, AreTheSameHoweverTheLatticeIsCut) {
 
 TEST(Ink, OfTheNearerLineLiesOnTop) {
     InkSettings settings;
-    settings.styles.fill({3.0F, {1, 0, 0}, 1.0F});
+    settings.styles.assign(kLineTypes, {3.0F, {1, 0, 0}, 1.0F});
     settings.styles[static_cast<std::size_t>(LineType::crease)].color = {0, 0, 1};
     Segment near_line{{2, 8.5F}, {14, 8.5F}};
     near_line.t = 1.0F;
@@ -1288,7 +1288,7 @@ TEST(Ink, IsTheSameOnAnyTile) {
     for (const double width : {0.5, 3.0, 11.0}) {
         const std::vector<double> whole = draw(found.segments, width);
         InkSettings settings;
-        settings.styles.fill({static_cast<float>(width), {0, 0, 0}, 1.0F});
+        settings.styles.assign(kLineTypes, {static_cast<float>(width), {0, 0, 0}, 1.0F});
         InkTile tile(settings);
         for (const auto& [x0, y0, w, h] :
              {std::tuple{0, 0, 20, 48}, std::tuple{20, 0, 28, 7}, std::tuple{20, 7, 28, 41}}) {

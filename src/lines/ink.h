@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "base/color.h"
@@ -21,11 +22,12 @@ struct LineStyle {
 };
 
 struct InkSettings {
-    std::array<LineStyle, kLineTypes> styles;
+    std::vector<LineStyle> styles;  ///< those of the line types come first
     /// Across the line. Solid is the exact area of each pixel under the line's band; linear and
     /// power are the paper's soft profiles, functions of the distance to the line alone.
     Metric profile{Metric::Kind::solid};
 
+    float widest() const;  ///< pixels
     /// From a line's middle to the farthest pixel centre that it inks.
     float reach() const;
 };
@@ -37,9 +39,12 @@ class InkTile {
 
     /// Clears the tile and moves it to pixels [x0, x0 + width) x [y0, y0 + height).
     void begin(int x0, int y0, int width, int height);
-    /// Adds a segment; what lies beyond the tile is left out.
-    void draw(const Segment& segment);
-    /// Lays the styles over each other, the nearer line on top at each pixel.
+    /// Adds a segment in one of the settings' styles, its width times `width_scale`; what lies
+    /// beyond the tile is left out.
+    void draw(const Segment& segment, std::size_t style, float width_scale = 1.0F);
+    /// The same in the style of its type.
+    void draw(const Segment& segment) { draw(segment, static_cast<std::size_t>(segment.type)); }
+    /// Lays the inks over each other, the nearer line on top at each pixel.
     void finish();
 
     bool empty() const { return empty_; }
@@ -63,25 +68,27 @@ class InkTile {
     bool touched(int x, int y) const { return touched_[run_of(x, y)] != 0; }
 
   private:
-    /// The ink of one style. A pixel's coverage is that of the line nearest to it: the union of the
-    /// bands, round at joins and ends.
+    /// One ink, that is, colour and opacity. A pixel's coverage is that of the line nearest to it:
+    /// the union of the bands, round at joins and ends.
     struct Layer {
-        LineStyle style;
+        Color color;
+        float opacity = 1.0F;
         bool used = false;
         std::vector<float> coverage;
         std::vector<float> t;  ///< of the nearest line that inks the pixel
     };
 
     std::size_t run_of(int x, int y) const { return index(x, y) / kLanes; }
-    void lay(const Layer& layer, std::size_t k);
+    void finish_alone(const Layer& layer);
+    void finish_pixel(std::size_t k, std::span<const Layer* const> used);
 
     InkSettings settings_;
     std::vector<float> profile_;  ///< strength by distance over half width, if soft
-    std::array<std::size_t, kLineTypes> layer_of_type_{};
+    std::vector<std::size_t> layer_of_style_;
     std::vector<Layer> layers_;
+    std::vector<const Layer*> here_;  ///< the layers that ink a pixel, the nearest first
     std::vector<float> alpha_;
     std::array<std::vector<float>, 3> color_;
-    std::vector<float> t_;  ///< of the nearest line at each pixel
     std::optional<Color> uniform_;
     std::vector<std::uint8_t> touched_;
     int x0_ = 0, y0_ = 0, width_ = 0, height_ = 0, stride_ = 0;

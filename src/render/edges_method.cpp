@@ -15,7 +15,7 @@ namespace {
 InkSettings ink_settings(const Settings& settings, Color color) {
     InkSettings ink;
     ink.profile = settings.profile();
-    ink.styles.fill({static_cast<float>(settings.line_width_px()), color, 1.0F});
+    ink.styles.assign(kLineTypes, {static_cast<float>(settings.line_width_px()), color, 1.0F});
     return ink;
 }
 
@@ -46,6 +46,8 @@ Edges::Edges(const Pipeline& shared)
     const int reach = static_cast<int>(std::ceil(draw_lines ? ink.reach() : 1.0F)) + 1;
     margin = (reach + kBlockSide - 1) / kBlockSide * kBlockSide;
     const Size size = shared.settings.size;
+    no_lines =
+        LineDensity(-margin, -margin, size.width + margin, size.height + margin, ink.widest());
     draw_tiles = cut_into_tiles(size, shared.settings.tile);
     search_tiles =
         cut_into_tiles({size.width + 2 * margin, size.height + 2 * margin}, shared.settings.tile);
@@ -81,9 +83,14 @@ RenderStats render_edges(const Pipeline& pipeline, const RenderControl& control)
         found[i] = finders[worker]->search(edges.search_tiles[i]);
     });
 
+    LineDensity density = edges.no_lines;
+    for (const auto& finder : finders) {
+        if (finder) density += finder->density();
+    }
+
     std::vector<std::unique_ptr<LineDrawer>> drawers(pool);
     loop.run(edges.draw_tiles.size(), [&](std::size_t i, std::size_t worker) {
-        if (!drawers[worker]) drawers[worker] = std::make_unique<LineDrawer>(edges);
+        if (!drawers[worker]) drawers[worker] = std::make_unique<LineDrawer>(edges, density);
         drawers[worker]->draw(edges.draw_tiles[i], found);
     });
 

@@ -3,6 +3,7 @@
 #include <array>
 #include <vector>
 
+#include "lines/density.h"
 #include "lines/detect.h"
 #include "lines/ink.h"
 #include "lines/line_type.h"
@@ -34,6 +35,8 @@ struct Edges {
     LocateSettings locate;
     LineTypes wanted;
     InkSettings ink;
+    /// Empty, for the tiles' workers to start from.
+    LineDensity no_lines;
     Viewpoint viewpoint;
     int margin;  ///< pixels searched beyond the film's edge, for lines that reach in
     std::vector<Tile> search_tiles, draw_tiles;

@@ -25,11 +25,18 @@ void LineDrawer::draw(const Tile& tile, const std::vector<std::vector<ColoredSeg
     }
     if (edges_.draw_lines) {
         for (const ColoredSegment* line : near_) {
-            if (edges_.wanted.has(line->segment.type)) ink_.draw(line->segment);
+            if (edges_.wanted.has(line->segment.type)) ink(line->segment);
         }
         ink_.finish();
     }
     write(tile);
+}
+
+void LineDrawer::ink(const Segment& segment) {
+    const auto most = static_cast<float>(edges_.pipeline.settings.line_density);
+    const Vec2f middle = (segment.a + segment.b) * 0.5F;
+    const float scale = most < 1.0F ? width_scale(density_.at(middle), most) : 1.0F;
+    ink_.draw(segment, static_cast<std::size_t>(segment.type), scale);
 }
 
 /// The segments that can change pixels of a tile.
@@ -67,7 +74,7 @@ void LineDrawer::smooth(const Tile& tile, const ColoredSegment& line) {
     const Segment& segment = line.segment;
     if (!segment.spans_cell) return;
     const Vec2f d = segment.b - segment.a;
-    const float length = std::hypot(d.x, d.y);
+    const float length = std::sqrt(d.x * d.x + d.y * d.y);
     if (length == 0.0F) return;
     const auto q = static_cast<float>(edges_.q);
     // Towards the segment's left: see Segment.
@@ -98,7 +105,8 @@ void LineDrawer::smooth(const Tile& tile, const ColoredSegment& line) {
         const auto& other = on_left ? line.right : line.left;
         for (std::size_t c = 0; c < 4; ++c) {
             const float change = std::clamp(other[c] - own[c], -kMostChange, kMostChange);
-            shift_[c][k] += static_cast<std::int32_t>(std::lround(area * change * kFixedPoint));
+            shift_[c][k] +=
+                static_cast<std::int32_t>(std::floor(area * change * kFixedPoint + 0.5F));
         }
     }
 }

@@ -14,7 +14,9 @@ namespace ink {
 /// Draws the lines of one tile after another.
 class LineDrawer {
   public:
-    explicit LineDrawer(const Edges& edges) : edges_(edges), ink_(edges.ink) {}
+    /// `density` is that of all lines found.
+    LineDrawer(const Edges& edges, const LineDensity& density)
+        : edges_(edges), density_(density), ink_(edges.ink) {}
 
     void draw(const Tile& tile, const std::vector<std::vector<ColoredSegment>>& found);
 
@@ -28,7 +30,10 @@ class LineDrawer {
     void smooth(const Tile& tile, const ColoredSegment& line);
     void write(const Tile& tile);
 
+    void ink(const Segment& segment);
+
     const Edges& edges_;
+    const LineDensity& density_;
     InkTile ink_;
     std::vector<const ColoredSegment*> near_;  ///< segments within reach of the tile
     /// What smoothing adds to each pixel's colour: linear, premultiplied R, G, B, A. In fixed

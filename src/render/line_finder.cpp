@@ -198,6 +198,10 @@ std::vector<ColoredSegment> LineFinder::find_lines() {
             return color_at(static_cast<int>(index % width), static_cast<int>(index / width));
         };
         found.push_back({segment, color(segment.left_sample), color(segment.right_sample)});
+        if (edges_.draw_lines && edges_.wanted.has(segment.type)) {
+            const auto type = static_cast<std::size_t>(segment.type);
+            density_.add(segment, edges_.ink.styles[type].width_px);
+        }
     }
     return found;
 }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "lines/connect.h"
+#include "lines/density.h"
 #include "lines/detect.h"
 #include "lines/locate.h"
 #include "lines/segment.h"
@@ -29,7 +30,8 @@ class LineFinder {
           sample_([this](std::span<const Vec2f> points, std::span<Sample> out) {
               sample(points, out);
           }),
-          ball_([this](std::size_t point) { return ball_at(point); }) {}
+          ball_([this](std::size_t point) { return ball_at(point); }),
+          density_(edges.no_lines) {}
 
     /// Design: trace the lattice, detect, locate, connect. Shades the tile's pixels on the way.
     std::vector<ColoredSegment> search(const Tile& tile) {
@@ -37,6 +39,9 @@ class LineFinder {
         shade(tile);
         return find_lines();
     }
+
+    /// Of the lines found so far that are to be drawn.
+    const LineDensity& density() const { return density_; }
 
     RenderStats stats() const {
         RenderStats result = stats_;
@@ -83,6 +88,7 @@ class LineFinder {
     std::vector<SuspectEdge> suspects_;
     std::vector<Crossing> crossings_;
     std::vector<Segment> segments_;
+    LineDensity density_;
     RenderStats stats_;
 };
 

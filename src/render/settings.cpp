@@ -371,6 +371,12 @@ std::vector<Setting> make_table() {
              return fmt::format("{}{}", s.line_width.value,
                                 kUnitNames[static_cast<std::size_t>(s.line_width.unit)]);
          }},
+        {"line-density", "Lines", "F",
+         "Method edges: share of an area that lines may cover; denser ones get thinner, 1 lets "
+         "them "
+         "be",
+         [](S& s, Text t) { s.line_density = read_number(t, 0.05, 1); },
+         [](const S& s) { return fmt::format("{}", s.line_density); }},
         {"line-color", "Lines", "COLOR", "Colour of the lines",
          [](S& s, Text t) { s.line_color = read_color(t); },
          [](const S& s) { return to_string(s.line_color); }},

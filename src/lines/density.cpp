@@ -1,0 +1,89 @@
+#include "lines/density.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace ink {
+
+namespace {
+
+constexpr float kFixedPoint = 1 << 20;
+
+int floor_divide(int a, int b) { return (a >= 0 ? a : a - b + 1) / b; }
+
+/// Squares must be wide enough for a single line, and a bundle of three, to count as sparse.
+constexpr int kLeastSide = 16;
+constexpr float kWidths = 8.0F;
+
+}  // namespace
+
+LineDensity::LineDensity(int x0, int y0, int x1, int y1, float widest)
+    : x0_(x0),
+      y0_(y0),
+      x1_(x1),
+      y1_(y1),
+      side_(std::max(kLeastSide, static_cast<int>(std::ceil(kWidths * widest)))),
+      i0_(floor_divide(x0, side_)),
+      j0_(floor_divide(y0, side_)),
+      across_(floor_divide(x1 - 1, side_) - i0_ + 1),
+      down_(floor_divide(y1 - 1, side_) - j0_ + 1),
+      inked_(static_cast<std::size_t>(across_) * static_cast<std::size_t>(down_)) {}
+
+std::size_t LineDensity::square(int i, int j) const {
+    const int column = std::clamp(i - i0_, 0, across_ - 1);
+    const int row = std::clamp(j - j0_, 0, down_ - 1);
+    return static_cast<std::size_t>(row) * static_cast<std::size_t>(across_) +
+           static_cast<std::size_t>(column);
+}
+
+/// Of a square, as far as it was searched.
+float LineDensity::area(int i, int j) const {
+    const int width = std::min(x1_, (i + 1) * side_) - std::max(x0_, i * side_);
+    const int height = std::min(y1_, (j + 1) * side_) - std::max(y0_, j * side_);
+    return static_cast<float>(std::max(width, 0)) * static_cast<float>(std::max(height, 0));
+}
+
+void LineDensity::add(const Segment& segment, float width) {
+    const Vec2f middle = (segment.a + segment.b) * 0.5F;
+    const Vec2f d = segment.b - segment.a;
+    const float inked = std::sqrt(d.x * d.x + d.y * d.y) * width;
+    const auto column = static_cast<int>(std::floor(middle.x / static_cast<float>(side_)));
+    const auto row = static_cast<int>(std::floor(middle.y / static_cast<float>(side_)));
+    inked_[square(column, row)] += static_cast<std::int64_t>(inked * kFixedPoint);
+}
+
+LineDensity& LineDensity::operator+=(const LineDensity& other) {
+    for (std::size_t k = 0; k < inked_.size(); ++k) inked_[k] += other.inked_[k];
+    return *this;
+}
+
+/// Between the middles of four squares, in proportion; squares cut by the border weigh less.
+float LineDensity::at(Vec2f point) const {
+    const float x = point.x / static_cast<float>(side_) - 0.5F;
+    const float y = point.y / static_cast<float>(side_) - 0.5F;
+    const float left = std::floor(x);
+    const float top = std::floor(y);
+    float inked = 0.0F;
+    float searched = 0.0F;
+    for (int n = 0; n < 4; ++n) {
+        const int i = static_cast<int>(left) + n % 2;
+        const int j = static_cast<int>(top) + n / 2;
+        const float covered = area(i, j);
+        if (covered == 0.0F) continue;
+        const float weight =
+            (n % 2 == 0 ? 1.0F - (x - left) : x - left) * (n / 2 == 0 ? 1.0F - (y - top) : y - top);
+        inked += weight * static_cast<float>(inked_[square(i, j)]) / kFixedPoint;
+        searched += weight * covered;
+    }
+    return searched > 0.0F ? inked / searched : 0.0F;
+}
+
+float width_scale(float share, float most) {
+    // Up to here lines keep their width; from here on they approach `most`, with no kink between.
+    const float free = 0.8F * most;
+    if (share <= free) return 1.0F;
+    const float room = most - free;
+    return (free + room * (1.0F - std::exp((free - share) / room))) / share;
+}
+
+}  // namespace ink

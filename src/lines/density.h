@@ -1,0 +1,45 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "base/vec.h"
+#include "lines/segment.h"
+
+namespace ink {
+
+/// How much of the picture lines would cover if none overlapped another: their length times their
+/// width, over the area, about each place. Where that exceeds what a drawing can bear, lines are
+/// drawn thinner, so that they add up to a tone instead of a black blot.
+///
+/// Lengths are summed in fixed point over squares of a fixed raster, so that sums do not depend on
+/// the order of the segments or on how the picture is cut.
+class LineDensity {
+  public:
+    LineDensity() = default;
+    /// Over pixels [x0, x1) x [y0, y1), the part of the screen that is searched for lines. `widest`
+    /// is the greatest width of a line, pixels: the squares are several times as wide.
+    LineDensity(int x0, int y0, int x1, int y1, float widest);
+
+    void add(const Segment& segment, float width);
+    LineDensity& operator+=(const LineDensity& other);
+
+    /// Covered share about a place, without end: 2 if lines lie side by side twice.
+    float at(Vec2f point) const;
+
+  private:
+    std::size_t square(int i, int j) const;
+    float area(int i, int j) const;
+
+    int x0_ = 0, y0_ = 0, x1_ = 0, y1_ = 0;
+    int side_ = 1;                     ///< of a square, pixels
+    int i0_ = 0, j0_ = 0;              ///< the first square
+    int across_ = 0, down_ = 0;        ///< squares
+    std::vector<std::int64_t> inked_;  ///< length times width, in 2^-20 square pixels
+};
+
+/// By how much to scale the width of lines that would cover `share` of their surroundings so that
+/// they cover no more than `most`: 1 as long as there is room, then less, smoothly.
+float width_scale(float share, float most);
+
+}  // namespace ink
