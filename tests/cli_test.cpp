@@ -375,7 +375,7 @@ INSTANTIATE_TEST_SUITE_P(
     name_of);
 
 TEST_F(CommandLine, RefusesAPictureThatDoesNotFitIntoMemoryBeforeItReadsTheInput) {
-    constexpr double kNeeded = 257.4e9;  // 65500 x 65500 pixels, 15 numbers of 4 bytes each
+    constexpr double kNeeded = 326.1e9;  // 65500 x 65500 pixels, 19 numbers of 4 bytes each
     if (static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGE_SIZE)) *
             0.8 >
         kNeeded) {
@@ -384,7 +384,7 @@ TEST_F(CommandLine, RefusesAPictureThatDoesNotFitIntoMemoryBeforeItReadsTheInput
     const Outcome outcome =
         run({"render", "missing.xyz", "-o", "a.exr", "--size", "65500x65500", "--aov", "all"});
     EXPECT_EQ(outcome.status, 2) << outcome.err;
-    expect_says(outcome.err, {"--size: 65500x65500 needs 257.4 GB", "this machine has", "smaller"});
+    expect_says(outcome.err, {"--size: 65500x65500 needs 326.1 GB", "this machine has", "smaller"});
     EXPECT_EQ(files(), std::set<std::string>{});
 }
 
@@ -635,7 +635,8 @@ TEST_F(CommandLine, WritesAovsAsChannelsOfAnExr) {
     for (const auto& [name, values] : channels) names.insert(name);
     EXPECT_EQ(names,
               (std::set<std::string>{"R", "G", "B", "A", "id.primitive", "id.part", "id.object",
-                                     "Z", "N.X", "N.Y", "N.Z", "P.X", "P.Y", "P.Z", "line.A"}));
+                                     "Z", "N.X", "N.Y", "N.Z", "P.X", "P.Y", "P.Z", "line.A",
+                                     "line.distance", "line.type", "line.id.near", "line.id.far"}));
 }
 
 TEST_F(CommandLine, WritesOnlyTheAovsThatAreAskedFor) {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <functional>
+#include <map>
 #include <numbers>
 #include <set>
 #include <stdexcept>
@@ -12,6 +13,7 @@
 #include <variant>
 #include <vector>
 
+#include "base/error.h"
 #include "io/reader.h"
 #include "lines/coverage.h"
 #include "render/render.h"
@@ -661,6 +663,172 @@ TEST(Box, HasCreasesAtItsThreeInnerEdgesAndASilhouetteAroundThem) {
             EXPECT_NEAR(total("silhouette"), 6 * edge * 2, 6) << "q " << q;
             EXPECT_NEAR(total("crease"), 3 * edge * 2, 6) << "q " << q;
         }
+    }
+}
+
+// Types and styles
+
+/// Pixels whose line on top is of that type: see LinePlanes.
+std::size_t pixels_of(const Film& film, LineType type) {
+    for (const Channel& channel : film.channels().channels) {
+        if (channel.name != "line.type") continue;
+        return static_cast<std::size_t>(
+            std::ranges::count(std::get<std::vector<std::uint32_t>>(channel.values),
+                               static_cast<std::uint32_t>(type) + 1));
+    }
+    throw std::logic_error("no line.type");
+}
+
+/// A quadrilateral of 40 x 30 pixels, a face of two triangles, and a second one beside it.
+Object two_quads() {
+    Object object = mesh_object(
+        {{-40, -15, 0}, {0, -15, 0}, {40, -15, 0}, {-40, 15, 0}, {0, 15, 0}, {40, 15, 0}},
+        {{0, 1, 4}, {0, 4, 3}, {1, 2, 5}, {1, 5, 4}});
+    auto& mesh = std::get<Mesh>(object.shape);
+    mesh.faces = {0, 0, 1, 1};
+    smooth_normals(mesh);
+    return object;
+}
+
+TEST(MeshLines, RunBetweenFacesAndNotAlongDiagonals) {
+    Settings settings = plan_view({128, 64}, 2.0);
+    set(settings, "lines", "mesh");
+    const Film film = draw(Scene({two_quads()}), settings);
+    const auto& ink = plane(film, "line.A");
+    for (int y = 20; y < 44; ++y) {
+        for (int x = 26; x < 102; ++x) {
+            const bool on_line = x == 63 || x == 64;  // the faces meet at x = 64
+            EXPECT_NEAR(ink[at({128, 64}, x, y)], on_line ? 1.0 : 0.0, 1e-3) << x << ", " << y;
+        }
+    }
+    EXPECT_EQ(pixels_of(film, LineType::silhouette), 0U);
+}
+
+TEST(MeshLines, TakeNoRays) {
+    const Scene scene({two_quads()});
+    const auto tracer = make_embree_tracer(scene);
+    Settings settings = plan_view({128, 64}, 2.0);
+    RenderStats without;
+    RenderStats with;
+    render(scene, *tracer, settings, {}, {}, &without);
+    set(settings, "lines", "all");
+    render(scene, *tracer, settings, {}, {}, &with);
+    EXPECT_EQ(with.rays, without.rays);
+    EXPECT_GT(with.crossings, without.crossings + 20);
+}
+
+TEST(MeshLines, FinerThanPixelsAreATone) {
+    std::vector<Vec3f> vertices;
+    std::vector<Mesh::Triangle> triangles;
+    constexpr std::uint32_t kSide = 300;
+    for (std::uint32_t j = 0; j <= kSide; ++j) {
+        for (std::uint32_t i = 0; i <= kSide; ++i) {
+            vertices.push_back(
+                {static_cast<float>(i) * 0.4F - 60.0F, static_cast<float>(j) * 0.4F - 60.0F, 0.0F});
+        }
+    }
+    for (std::uint32_t j = 0; j < kSide; ++j) {
+        for (std::uint32_t i = 0; i < kSide; ++i) {
+            const std::uint32_t k = j * (kSide + 1) + i;
+            triangles.push_back({k, k + 1, k + kSide + 2});
+            triangles.push_back({k, k + kSide + 2, k + kSide + 1});
+        }
+    }
+    Settings settings = plan_view({100, 100}, 2.0);
+    set(settings, "lines", "mesh");
+    const double tone =
+        mean(plane(draw(Scene({mesh_object(vertices, triangles)}), settings), "line.A"));
+    EXPECT_LT(tone, 0.75);
+    EXPECT_GT(tone, 0.2);
+}
+
+TEST(OpenCylinder, HasABoundaryAtItsRimsAndSilhouettesAtItsSides) {
+    std::vector<Vec3f> vertices;
+    std::vector<Mesh::Triangle> triangles;
+    constexpr std::uint32_t kSides = 96;
+    for (std::uint32_t k = 0; k < kSides; ++k) {
+        const auto angle = static_cast<float>(k * 2 * std::numbers::pi / kSides);
+        for (const float y : {-30.0F, 30.0F}) {
+            vertices.push_back({25 * std::cos(angle), y, 25 * std::sin(angle)});
+        }
+        const std::uint32_t n = (k + 1) % kSides;
+        triangles.push_back({2 * k, 2 * k + 1, 2 * n + 1});
+        triangles.push_back({2 * k, 2 * n + 1, 2 * n});
+    }
+    Object object = mesh_object(vertices, triangles);
+    smooth_normals(std::get<Mesh>(object.shape));
+    Settings settings = plan_view({96, 96}, 2.0);
+    settings.view.eye = Vec3d{0, 60, 100};  // sees the upper rim whole, and into the cylinder
+    std::map<std::string, double> length;
+    for (const char* type :
+         {"boundary", "silhouette", "self-occlusion", "crease", "intersection"}) {
+        set(settings, "lines", type);
+        length[type] = mean(plane(draw(Scene({object}), settings), "line.A")) * 96 * 96 / 2.0;
+    }
+    // The upper rim is an ellipse of half axes 25 and 25 sin(elevation), of the lower one half is
+    // seen; the sides are as long as the cylinder is high, times the cosine.
+    const double elevation = std::atan2(60.0, 100.0);
+    const double a = 25.0;
+    const double b = 25.0 * std::sin(elevation);
+    const double ellipse = std::numbers::pi * (3 * (a + b) - std::sqrt((3 * a + b) * (a + 3 * b)));
+    EXPECT_NEAR(length["boundary"], 1.5 * ellipse, 0.06 * ellipse);
+    EXPECT_NEAR(length["silhouette"], 2 * 60 * std::cos(elevation), 8.0);
+    EXPECT_LT(length["self-occlusion"] + length["crease"] + length["intersection"], 6.0);
+}
+
+TEST(LineStyles, OfTypesAndObjectsAreDrawnAsTheySay) {
+    // Two discs side by side, seen face on.
+    const Scene scene({sphere_object({{{-32, 0, 0}, 20}}), sphere_object({{{32, 0, 0}, 20}})});
+    Settings settings = plan_view({128, 64}, 2.0);
+    set(settings, "line", "silhouette:width=4px");
+    set(settings, "line", "all@2:color=#ff0000,opacity=0.5");
+    const Film film = draw(scene, settings);
+    const auto ink_of = [&](int x0) {
+        double sum = 0.0;
+        for (int y = 0; y < 64; ++y) {
+            for (int x = x0; x < x0 + 64; ++x) {
+                sum += static_cast<double>(plane(film, "line.A")[at({128, 64}, x, y)]);
+            }
+        }
+        return sum;
+    };
+    const double circle = 2 * std::numbers::pi * 20;
+    EXPECT_NEAR(ink_of(0), circle * 4, circle * 0.1);
+    EXPECT_NEAR(ink_of(64), circle * 4 * 0.5, circle * 0.1);
+    // In the middle of the second one's outline: half red on half shaded.
+    const std::uint32_t right = film.display().pixels[at({128, 64}, 115, 32)];
+    const std::uint32_t left = film.display().pixels[at({128, 64}, 12, 32)];
+    EXPECT_GT(right & 0xFFU, (right >> 8U & 0xFFU) + 100);
+    EXPECT_LT(left & 0xFFU, 10U);
+}
+
+TEST(LineStyles, OfAnObjectThatDoesNotExistAreRefused) {
+    Settings settings = plan_view({32, 32});
+    set(settings, "line", "all@3:width=1px");
+    EXPECT_THROW(draw(Scene({sphere_object({{{0, 0, 0}, 9}})}), settings), UsageError);
+}
+
+TEST(LinePlanes, SayWhatLineAPixelShows) {
+    const Scene scene({sphere_object({{{0, 0, 0}, 20}})});
+    const Film film = draw(scene, plan_view({64, 64}, 4.0));
+    const auto& distance = plane(film, "line.distance");
+    for (int x = 0; x < 64; ++x) {
+        const double expected = std::abs(std::hypot(x + 0.5 - 32, 0.5) - 20);
+        const float found = distance[at({64, 64}, x, 32)];
+        if (expected < 2.6) {
+            EXPECT_NEAR(found, expected, 0.02) << x;
+        } else if (expected > 2.8) {
+            EXPECT_TRUE(std::isinf(found)) << x;
+        }
+    }
+    const std::size_t inked = pixels_of(film, LineType::silhouette);
+    EXPECT_EQ(inked, static_cast<std::size_t>(std::ranges::count_if(
+                         distance, [](float d) { return std::isfinite(d); })));
+    for (const Channel& channel : film.channels().channels) {
+        if (!channel.name.starts_with("line.id")) continue;
+        const auto& ids = std::get<std::vector<std::uint32_t>>(channel.values);
+        const std::uint32_t wanted = channel.name == "line.id.near" ? 1 : 0;
+        EXPECT_EQ(ids[at({64, 64}, 12, 32)], wanted) << channel.name;
     }
 }
 

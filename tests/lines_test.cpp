@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <numbers>
@@ -182,18 +183,19 @@ Found search(const World& world, int q, int i0, int j0, int columns, int rows) {
     viewpoint.parallel = true;
     viewpoint.origin = {{0, 0, 2}, {world.unit, 0, 0}, {0, -world.unit, 0}};
     viewpoint.direction = {{0, 0, -1}, {}, {}};
-    BallFunction ball;
+    SurfaceFunction describe;
     if (world.knows_balls) {
-        ball = [&](std::size_t k) {
+        describe = [&](std::size_t k, Sample& sample) {
             const auto width = static_cast<std::size_t>(columns);
-            return world(grid.point(static_cast<int>(k % width), static_cast<int>(k / width))).ball;
+            sample.ball =
+                world(grid.point(static_cast<int>(k % width), static_cast<int>(k / width))).ball;
         };
     }
     const DetectSettings detection;
     detect(grid, detection, found.suspects);
     Locator locator(viewpoint, LocateSettings{});
     locator.locate(
-        grid, found.suspects, ball,
+        grid, found.suspects, describe,
         [&](std::span<const Vec2f> points, std::span<Sample> out) {
             found.samples += points.size();
             std::ranges::transform(points, out.begin(), world);
@@ -1280,6 +1282,31 @@ TEST(Ink, OfTheNearerLineLiesOnTop) {
             EXPECT_FLOAT_EQ(tile.color()[0][k], crease_in_front ? 0.0F : 1.0F);
             EXPECT_FLOAT_EQ(tile.color()[2][k], crease_in_front ? 1.0F : 0.0F);
         }
+    }
+}
+
+TEST(Ink, OfThreeCrossingLinesIsLaidFrontToBack) {
+    InkSettings settings;
+    settings.styles.assign(kLineTypes, {40.0F, {1, 0, 0}, 0.5F});
+    settings.styles[1].color = {0, 1, 0};
+    settings.styles[2].color = {0, 0, 1};
+    for (const std::array<int, 3> order :
+         {std::array{0, 1, 2}, std::array{2, 0, 1}, std::array{1, 2, 0}, std::array{2, 1, 0}}) {
+        InkTile tile(settings);
+        tile.begin(0, 0, 16, 16);
+        for (const int k : order) {
+            Segment line{{0, 8}, {16, 8}};
+            line.type = static_cast<LineType>(k);
+            line.t = std::array{2.0F, 3.0F, 1.0F}[static_cast<std::size_t>(k)];
+            tile.draw(line);
+        }
+        tile.finish();
+        const std::size_t k = tile.index(8, 8);
+        // The third type is nearest, then the first, then the second.
+        EXPECT_FLOAT_EQ(tile.color()[2][k], 0.5F);
+        EXPECT_FLOAT_EQ(tile.color()[0][k], 0.25F);
+        EXPECT_FLOAT_EQ(tile.color()[1][k], 0.125F);
+        EXPECT_FLOAT_EQ(tile.alpha()[k], 0.875F);
     }
 }
 

@@ -4,6 +4,7 @@
 
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace inktrace::cli {
 
@@ -13,17 +14,22 @@ void add_setting_flags(CLI::App& command, Settings& settings, std::string_view t
         const std::string help = info.default_value.empty()
                                      ? info.help
                                      : fmt::format("{} [{}]", info.help, info.default_value);
+        // The last of several counts, so that a script can add to the flags that it was given;
+        // unless they add up.
+        using Values = std::vector<std::string>;
         command
-            .add_option_function<std::string>(
+            .add_option_function<Values>(
                 "--" + info.name,
-                [&settings, name = info.name](const std::string& value) {
-                    settings.set(name, value);
+                [&settings, name = info.name](const Values& values) {
+                    for (const std::string& value : values) settings.set(name, value);
                 },
                 help)
             ->type_name(info.value)
             ->group(info.topic)
             ->expected(1)
-            ->take_last();  // so that a script can add to the flags that it was given
+            ->allow_extra_args(false)
+            ->multi_option_policy(info.repeatable ? CLI::MultiOptionPolicy::TakeAll
+                                                  : CLI::MultiOptionPolicy::TakeLast);
     }
 }
 

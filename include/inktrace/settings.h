@@ -15,6 +15,7 @@ struct SettingInfo {
     std::string value;          ///< how a value is written: "LEN"
     std::string help;           ///< one sentence, no full stop
     std::string default_value;  ///< in the form that `Settings::set` reads; empty: automatic
+    bool repeatable = false;    ///< `set` adds to earlier values; an empty one clears them
 };
 
 /// All settings, grouped by topic.

@@ -11,7 +11,7 @@ const std::vector<SettingInfo>& all_settings() {
         std::vector<SettingInfo> infos;
         for (const ink::Setting& row : ink::settings_table()) {
             infos.push_back({std::string(row.name), std::string(row.topic), std::string(row.value),
-                             std::string(row.help), row.get(defaults)});
+                             std::string(row.help), row.get(defaults), row.repeatable});
         }
         return infos;
     }();

@@ -157,11 +157,7 @@ void copy_block(Size size, int x, int y, const Lanes<T>& block, T* plane) {
 }  // namespace
 
 Film::Film(Size size, const FilmSettings& settings) : size_(size), settings_(settings) {
-    const Rgb8 line = settings.line_color;
-    line_ = settings.blend == BlendSpace::linear
-                ? srgb_decode(line)
-                : Color{static_cast<float>(line.r) / 255.0F, static_cast<float>(line.g) / 255.0F,
-                        static_cast<float>(line.b) / 255.0F};
+    line_ = in_blend_space(settings.line_color);
     display_.size = size;
     channels_.size = size;
     if (settings.display) display_.pixels.resize(size.pixels());
@@ -174,6 +170,12 @@ Film::Film(Size size, const FilmSettings& settings) : size_(size), settings_(set
     background = paper(background);
     if (settings.blend == BlendSpace::display) encode(background);
     finish(background, background_);
+}
+
+Color Film::in_blend_space(Rgb8 color) const {
+    if (settings_.blend == BlendSpace::linear) return srgb_decode(color);
+    return {static_cast<float>(color.r) / 255.0F, static_cast<float>(color.g) / 255.0F,
+            static_cast<float>(color.b) / 255.0F};
 }
 
 /// What lies below the lines: the shaded colour, or white paper for lines alone.
@@ -332,8 +334,9 @@ void Film::shift_colors(const TouchUp& change, int count, ColorPacket& colors) c
     }
 }
 
-void Film::put_row(std::size_t plane, int x, int y, int count, const float* values) {
-    auto& target = std::get<std::vector<float>>(channels_.channels[plane].values);
+template <class T>
+void Film::put_row(std::size_t plane, int x, int y, int count, const T* values) {
+    auto& target = std::get<std::vector<T>>(channels_.channels[plane].values);
     const std::size_t first = static_cast<std::size_t>(y) * static_cast<std::size_t>(size_.width) +
                               static_cast<std::size_t>(x);
     std::copy_n(values, std::min(count, size_.width - x),
@@ -356,5 +359,7 @@ template std::size_t Film::add_plane<float>(std::string);
 template std::size_t Film::add_plane<std::uint32_t>(std::string);
 template void Film::put_plane<float>(std::size_t, int, int, const Lanes<float>&);
 template void Film::put_plane<std::uint32_t>(std::size_t, int, int, const Lanes<std::uint32_t>&);
+template void Film::put_row<float>(std::size_t, int, int, int, const float*);
+template void Film::put_row<std::uint32_t>(std::size_t, int, int, int, const std::uint32_t*);
 
 }  // namespace ink

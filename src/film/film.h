@@ -75,8 +75,9 @@ class Film {
     };
     void touch_up(int x, int y, int count, const TouchUp& change);
 
-    /// The lines' colour in the blend space.
+    /// The lines' colour in the blend space, and any other.
     Color line_color() const { return line_; }
+    Color in_blend_space(Rgb8 color) const;
 
     /// Adds a plane for data beside the colour; returns its index.
     template <class T>
@@ -85,8 +86,9 @@ class Film {
     template <class T>
     void put_plane(std::size_t plane, int x, int y, const Lanes<T>& values);
 
-    /// Writes `count` values of a row of a float plane, as far as they lie on the film.
-    void put_row(std::size_t plane, int x, int y, int count, const float* values);
+    /// Writes `count` values of a row of a plane, as far as they lie on the film.
+    template <class T>
+    void put_row(std::size_t plane, int x, int y, int count, const T* values);
 
     const DisplayImage& display() const { return display_; }    ///< empty unless asked for
     const ChannelImage& channels() const { return channels_; }  ///< R G B A if linear, then planes

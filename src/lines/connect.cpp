@@ -125,8 +125,15 @@ void Connector::join_junction(std::vector<Segment>& segments) {
     if (ports_.size() == 1) {
         // A crease or a jump that ends on another line, or fades out.
         if (segments.size() == first_segment_) return;
-        const Segment& line = segments[first_segment_];
-        const Vec2f end = nearest_on_segment(ports_[0].crossing->point, line.a, line.b);
+        const Vec2f from = ports_[0].crossing->point;
+        Vec2f end;
+        float least = std::numeric_limits<float>::max();
+        for (std::size_t k = first_segment_; k < segments.size(); ++k) {
+            const Vec2f foot = nearest_on_segment(from, segments[k].a, segments[k].b);
+            if (distance_squared(from, foot) >= least) continue;
+            least = distance_squared(from, foot);
+            end = foot;
+        }
         segments.push_back(make_segment(ports_[0], end));
         return;
     }
@@ -163,9 +170,20 @@ Segment Connector::make_segment(const Port& from, const Port& to) {
 
 Segment Connector::make_segment(const Port& from, Vec2f to) {
     const Crossing& p = *from.crossing;
-    return {
-        p.point,           to, p.type, p.strength, p.t, from.after, from.before, from.after_sample,
-        from.before_sample};
+    Segment segment;
+    segment.a = p.point;
+    segment.b = to;
+    segment.type = p.type;
+    segment.strength = p.strength;
+    segment.t = p.t;
+    segment.owner = p.nearer;
+    // Lines between faces are told apart by the faces, and lie within one geometry.
+    const bool mesh = p.type == LineType::mesh;
+    segment.left = mesh ? p.nearer : from.after;
+    segment.right = mesh ? p.nearer : from.before;
+    segment.left_sample = from.after_sample;
+    segment.right_sample = from.before_sample;
+    return segment;
 }
 
 }  // namespace ink

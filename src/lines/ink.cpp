@@ -14,6 +14,11 @@ namespace {
 
 constexpr int kProfileEntries = 512;
 
+/// The lines between a mesh's faces run up to its outline, and in front of it where the surface
+/// turns away. Taking them to lie this much farther behind, in a scene of size 1, keeps them below
+/// the outline, and above what is well behind.
+constexpr float kMeshBehind = 0.1F;
+
 /// A segment made ready for the loop over pixels.
 struct Stroke {
     Vec2f a, along;  ///< start and unit direction
@@ -93,7 +98,8 @@ Stroke make_stroke(const Segment& segment, float width, const float* profile) {
     const Vec2f d = segment.b - segment.a;
     const float length = std::sqrt(d.x * d.x + d.y * d.y);
     const Vec2f along = length > 0.0F ? d * (1.0F / length) : Vec2f{1.0F, 0.0F};
-    return {segment.a, along, length, 0.5F * width, segment.strength, segment.t, profile};
+    const float t = segment.t + (segment.type == LineType::mesh ? kMeshBehind : 0.0F);
+    return {segment.a, along, length, 0.5F * width, segment.strength, t, profile};
 }
 
 }  // namespace

@@ -9,10 +9,12 @@ enum class LineType : std::uint8_t {
     silhouette,      ///< the geometry ID changes and the surfaces do not meet
     intersection,    ///< the geometry ID changes and the surfaces meet
     self_occlusion,  ///< one geometry, its depth jumps
-    crease           ///< one geometry, its normal jumps
+    crease,          ///< one geometry, its normal jumps
+    boundary,        ///< a surface ends at an open edge, in front of whatever is behind
+    mesh             ///< one geometry, the face of the mesh changes
 };
 
-inline constexpr int kLineTypes = 4;
+inline constexpr int kLineTypes = 6;
 
 /// A set of line types.
 class LineTypes {
@@ -20,6 +22,12 @@ class LineTypes {
     static constexpr LineTypes all() {
         LineTypes types;
         types.bits_ = (1U << kLineTypes) - 1U;
+        return types;
+    }
+    /// All but those that are drawn only on request.
+    static constexpr LineTypes usual() {
+        LineTypes types = all();
+        types.bits_ &= ~(1U << index(LineType::mesh));
         return types;
     }
     constexpr bool has(LineType type) const { return (bits_ >> index(type) & 1U) != 0; }

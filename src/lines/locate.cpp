@@ -49,9 +49,9 @@ Locator::Locator(const Viewpoint& viewpoint, const LocateSettings& settings)
 }
 
 void Locator::locate(const SampleGrid& grid, std::span<const SuspectEdge> edges,
-                     const BallFunction& ball, const SampleFunction& sample,
+                     const SurfaceFunction& describe, const SampleFunction& sample,
                      std::vector<Crossing>& crossings) {
-    start(grid, edges, ball);
+    start(grid, edges, describe);
     for (;;) {
         active_.clear();
         for (std::size_t k = 0; k < intervals_.size(); ++k) {
@@ -71,7 +71,7 @@ void Locator::locate(const SampleGrid& grid, std::span<const SuspectEdge> edges,
 
 /// Intervals go by squares of the lattice, so that rays of a packet are close together.
 void Locator::start(const SampleGrid& grid, std::span<const SuspectEdge> edges,
-                    const BallFunction& ball) {
+                    const SurfaceFunction& describe) {
     constexpr int kSquare = 8;
     const int across = (grid.width + kSquare - 1) / kSquare;
     const int down = (grid.height + kSquare - 1) / kSquare;
@@ -97,9 +97,9 @@ void Locator::start(const SampleGrid& grid, std::span<const SuspectEdge> edges,
         interval.at_b = grid.sample(grid.index(i, j));
         interval.suspicion = edge.suspicion;
         interval.edge = k;
-        if (ball) {
-            interval.at_a.ball = ball(grid.index(edge.i, edge.j));
-            interval.at_b.ball = ball(grid.index(i, j));
+        if (describe) {
+            describe(grid.index(edge.i, edge.j), interval.at_a);
+            describe(grid.index(i, j), interval.at_b);
             predict(interval);
         }
         if (interval.state == State::foreseen) continue;
@@ -303,18 +303,36 @@ bool Locator::classify(const Interval& interval, Crossing& crossing) const {
     crossing.t = a_in_front ? a.t : b.t;
     if (interval.suspicion == Suspicion::id) {
         const bool both = a.id != kBackground && b.id != kBackground;
-        crossing.type =
-            both && surfaces_meet(interval) ? LineType::intersection : LineType::silhouette;
+        crossing.type = both && surfaces_meet(interval) ? LineType::intersection
+                        : ends_at_rim(interval)         ? LineType::boundary
+                                                        : LineType::silhouette;
         return a.id != b.id;
     }
     if (!surfaces_meet(interval)) {
-        crossing.type = LineType::self_occlusion;
+        crossing.type = ends_at_rim(interval) ? LineType::boundary : LineType::self_occlusion;
         return true;
     }
     if (!has_crease(interval)) return false;
     crossing.type = LineType::crease;
     crossing.strength = crease_strength(2.0F * std::asin(std::min(0.5F * turn(a, b), 1.0F)));
     return true;
+}
+
+/// Whether the nearer surface ends there because it is open, and not because it turns away.
+bool Locator::ends_at_rim(const Interval& interval) const {
+    const Sample& a = interval.at_a;
+    const Sample& b = interval.at_b;
+    const bool a_in_front = b.id == kBackground || (a.id != kBackground && a.t <= b.t);
+    const Sample& front = a_in_front ? a : b;
+    if (!std::isfinite(front.rim)) return false;
+    const auto depth = static_cast<double>(front.t);
+    const auto at = [&](Vec2f p) {
+        return viewpoint_.origin(p) + normalize(viewpoint_.direction(p)) * depth;
+    };
+    const auto across = static_cast<float>(length(at(interval.b) - at(interval.a)));
+    // Where the surface turns away, its slope grows without end and would make every edge near.
+    const float stretch = 1.0F + std::min(slope(front), settings_.steep_slope);
+    return front.rim <= settings_.rim_slack * across * stretch;
 }
 
 /// What a prediction says needs no measuring: a limb hides, a seam joins.

@@ -42,6 +42,8 @@ struct LocateSettings {
     /// `steep_steps` a limb's slope grows by this much at least, and this share of the gap is left.
     float limb_growth = 2.0F;
     float limb_gap = 0.125F;
+    /// A surface ends at an open edge if the crossing lies within this many last intervals of one.
+    float rim_slack = 2.0F;
     /// Creases: none below the first angle, full strength from the second on, smoothstep between.
     float crease_min_deg = 10.0F;
     float crease_full_deg = 30.0F;
@@ -54,7 +56,7 @@ struct Crossing {
     float strength = 1.0F;
     float t = 0.0F;          ///< of the nearer side
     std::uint32_t edge = 0;  ///< index of the suspect edge
-    /// IDs at the edge's first and second end's side.
+    /// IDs at the edge's first and second end's side; of a mesh line, numbers for the faces.
     GeometryId first = kBackground, second = kBackground;
     GeometryId nearer = kBackground;  ///< the one of the two that lies in front
 };
@@ -67,9 +69,9 @@ class Locator {
   public:
     Locator(const Viewpoint& viewpoint, const LocateSettings& settings);
 
-    /// `ball` may be empty if nothing is known of the grid's surfaces.
+    /// `describe` may be empty if nothing is known of the grid's surfaces.
     void locate(const SampleGrid& grid, std::span<const SuspectEdge> edges,
-                const BallFunction& ball, const SampleFunction& sample,
+                const SurfaceFunction& describe, const SampleFunction& sample,
                 std::vector<Crossing>& crossings);
 
   private:
@@ -95,7 +97,7 @@ class Locator {
     };
 
     void start(const SampleGrid& grid, std::span<const SuspectEdge> edges,
-               const BallFunction& ball);
+               const SurfaceFunction& describe);
     void predict(Interval& interval) const;
     void step(const SampleFunction& sample);
     Vec2f next_point(const Interval& interval) const;
@@ -107,6 +109,7 @@ class Locator {
     bool has_jump(const Interval& interval) const;
     bool has_crease(const Interval& interval) const;
     bool classify(const Interval& interval, Crossing& crossing) const;
+    bool ends_at_rim(const Interval& interval) const;
     bool classify_foreseen(const Interval& interval, Crossing& crossing) const;
     float crease_strength(float angle) const;
     float jump_share(const Interval& interval) const;

@@ -16,8 +16,9 @@ struct Segment {
     float strength = 1.0F;  ///< [0, 1]; below 1 for creases of small angle
     float t = 0.0F;         ///< of the nearer side, distance along the ray as in Sample
     /// Geometry on the left and on the right of the way from a to b (y points down); equal for
-    /// self-occlusions and creases.
+    /// lines within one geometry.
     GeometryId left = kBackground, right = kBackground;
+    GeometryId owner = kBackground;  ///< the geometry whose line it is: the nearer of the two
     /// Lattice points whose colours the two sides have: indices into the grid that was searched.
     std::uint32_t left_sample = 0, right_sample = 0;
     bool spans_cell =

@@ -6,7 +6,7 @@
 namespace ink {
 
 AovWriter::AovWriter(const Scene& scene, const Camera& camera, const std::vector<Aov>& aovs,
-                     Film& film)
+                     bool located, Film& film)
     : frame_(scene.frame()), camera_(camera), film_(film) {
     const auto add_planes = [&](std::initializer_list<const char*> names) {
         std::optional<std::size_t> first;
@@ -29,7 +29,14 @@ AovWriter::AovWriter(const Scene& scene, const Camera& camera, const std::vector
             case Aov::depth: depth_ = add_planes({"Z"}); break;
             case Aov::normal: normal_ = add_planes({"N.X", "N.Y", "N.Z"}); break;
             case Aov::position: position_ = add_planes({"P.X", "P.Y", "P.Z"}); break;
-            case Aov::lines: lines_ = add_planes({"line.A"}); break;
+            case Aov::lines:
+                lines_ = add_planes({"line.A"});
+                if (!located) break;
+                line_planes_ = add_planes({"line.distance"});
+                for (const char* name : {"line.type", "line.id.near", "line.id.far"}) {
+                    film.add_plane<std::uint32_t>(name);
+                }
+                break;
         }
     }
 }
@@ -47,6 +54,18 @@ void AovWriter::put_strength(Block block, const Lanes<float>& strength) const {
 
 void AovWriter::put_strength(int x, int y, int count, const float* strength) const {
     if (lines_) film_.put_row(*lines_, x, y, count, strength);
+}
+
+void AovWriter::put_lines(int x0, int y0, int x1, int y1, const LinePlanes& lines) const {
+    if (!line_planes_) return;
+    for (int y = y0; y < y1; ++y) {
+        const std::size_t k = lines.index(0, y - y0);
+        std::size_t plane = *line_planes_;
+        film_.put_row(plane++, x0, y, x1 - x0, lines.distance().data() + k);
+        for (const auto* values : {&lines.type(), &lines.near_id(), &lines.far_id()}) {
+            film_.put_row(plane++, x0, y, x1 - x0, values->data() + k);
+        }
+    }
 }
 
 void AovWriter::put_ids(Block block, const HitPacket& hits) const {

@@ -1,9 +1,12 @@
 #include "render/edges_method.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <memory>
 
+#include "base/error.h"
 #include "base/parallel.h"
 #include "render/line_drawer.h"
 #include "render/line_finder.h"
@@ -12,10 +15,42 @@ namespace ink {
 
 namespace {
 
-InkSettings ink_settings(const Settings& settings, Color color) {
+bool has_object_rules(const Settings& settings) {
+    return std::ranges::any_of(settings.line_rules,
+                               [](const LineRule& rule) { return rule.object > 0; });
+}
+
+LineStyle line_style(const Settings& settings, const Film& film, LineType type, int object) {
+    LineStyle style{static_cast<float>(settings.line_width_px()), film.line_color(), 1.0F};
+    for (const LineRule& rule : settings.line_rules) {
+        if (!rule.applies(type, object)) continue;
+        if (rule.width) {
+            style.width_px =
+                static_cast<float>(rule.width->pixels(settings.dpi, settings.size.height));
+        }
+        if (rule.color) style.color = film.in_blend_space(*rule.color);
+        if (rule.opacity) style.opacity = static_cast<float>(*rule.opacity);
+    }
+    return style;
+}
+
+/// Throws UsageError if a rule is for an object that does not exist.
+InkSettings ink_settings(const Pipeline& pipeline) {
+    const Settings& settings = pipeline.settings;
+    const auto objects = static_cast<int>(pipeline.scene.objects().size());
+    for (const LineRule& rule : settings.line_rules) {
+        if (rule.object <= objects) continue;
+        throw UsageError(
+            fmt::format("--line: there is no object {}; the scene has {}", rule.object, objects));
+    }
     InkSettings ink;
     ink.profile = settings.profile();
-    ink.styles.assign(kLineTypes, {static_cast<float>(settings.line_width_px()), color, 1.0F});
+    for (int object = 1; object <= (has_object_rules(settings) ? objects : 1); ++object) {
+        for (int type = 0; type < kLineTypes; ++type) {
+            ink.styles.push_back(
+                line_style(settings, pipeline.film, static_cast<LineType>(type), object));
+        }
+    }
     return ink;
 }
 
@@ -32,10 +67,11 @@ Edges::Edges(const Pipeline& shared)
       draw_lines(shared.settings.draws_lines()),
       smooth_shading(shared.settings.smoothing().kind == AntiAliasing::Kind::edges),
       wanted(shared.settings.lines),
-      ink(ink_settings(shared.settings, shared.film.line_color())) {
+      styles_by_object(has_object_rules(shared.settings)),
+      ink(ink_settings(shared)) {
     // A sharp corner can look like a jump before it is located.
-    detect.depths =
-        smooth_shading || wanted.has(LineType::self_occlusion) || wanted.has(LineType::crease);
+    detect.depths = smooth_shading || wanted.has(LineType::self_occlusion) ||
+                    wanted.has(LineType::boundary) || wanted.has(LineType::crease);
     detect.normals = smooth_shading || wanted.has(LineType::crease);
     const Camera& camera = shared.camera;
     detect.least_jump = 0.2F * camera.least_footprint() / static_cast<float>(q);
@@ -54,6 +90,12 @@ Edges::Edges(const Pipeline& shared)
     for (Tile& tile : search_tiles) {
         tile = {tile.x0 - margin, tile.y0 - margin, tile.x1 - margin, tile.y1 - margin};
     }
+}
+
+std::size_t Edges::style_of(const Segment& segment) const {
+    const auto type = static_cast<std::size_t>(segment.type);
+    if (!styles_by_object || segment.owner == kBackground) return type;
+    return pipeline.ids.object_of(segment.owner) * kLineTypes + type;
 }
 
 namespace {

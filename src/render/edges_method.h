@@ -26,6 +26,10 @@ struct ColoredSegment {
 struct Edges {
     explicit Edges(const Pipeline& shared);
 
+    /// Index into the ink's styles.
+    std::size_t style_of(const Segment& segment) const;
+    bool wants_faces() const { return draw_lines && wanted.has(LineType::mesh); }
+
     const Pipeline& pipeline;
     int q;  ///< lattice points along a pixel's side
     Surfaces surfaces;
@@ -34,7 +38,8 @@ struct Edges {
     DetectSettings detect;
     LocateSettings locate;
     LineTypes wanted;
-    InkSettings ink;
+    bool styles_by_object;
+    InkSettings ink;  ///< styles by type, object after object where they have styles of their own
     /// Empty, for the tiles' workers to start from.
     LineDensity no_lines;
     Viewpoint viewpoint;

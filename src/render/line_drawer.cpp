@@ -16,6 +16,7 @@ int floor_divide(int a, int b) { return (a >= 0 ? a : a - b + 1) / b; }
 void LineDrawer::draw(const Tile& tile, const std::vector<std::vector<ColoredSegment>>& found) {
     const Timer timer(stats_.lines_ms);
     gather(tile, found);
+    if (edges_.pipeline.aovs && edges_.pipeline.aovs->wants_line_planes()) write_planes(tile);
     if (near_.empty()) return;
 
     ink_.begin(tile.x0, tile.y0, tile.x1 - tile.x0, tile.y1 - tile.y0);
@@ -32,11 +33,26 @@ void LineDrawer::draw(const Tile& tile, const std::vector<std::vector<ColoredSeg
     write(tile);
 }
 
-void LineDrawer::ink(const Segment& segment) {
+/// Below 1 where lines are dense.
+float LineDrawer::width_scale_at(const Segment& segment) const {
     const auto most = static_cast<float>(edges_.pipeline.settings.line_density);
-    const Vec2f middle = (segment.a + segment.b) * 0.5F;
-    const float scale = most < 1.0F ? width_scale(density_.at(middle), most) : 1.0F;
-    ink_.draw(segment, static_cast<std::size_t>(segment.type), scale);
+    if (most >= 1.0F) return 1.0F;
+    return width_scale(density_.at((segment.a + segment.b) * 0.5F), most);
+}
+
+void LineDrawer::ink(const Segment& segment) {
+    ink_.draw(segment, edges_.style_of(segment), width_scale_at(segment));
+}
+
+void LineDrawer::write_planes(const Tile& tile) {
+    planes_.begin(tile.x0, tile.y0, tile.x1 - tile.x0, tile.y1 - tile.y0);
+    for (const ColoredSegment* line : near_) {
+        const Segment& segment = line->segment;
+        if (!edges_.draw_lines || !edges_.wanted.has(segment.type)) continue;
+        const LineStyle& style = edges_.ink.styles[edges_.style_of(segment)];
+        planes_.add(segment, style.width_px * width_scale_at(segment));
+    }
+    edges_.pipeline.aovs->put_lines(tile.x0, tile.y0, tile.x1, tile.y1, planes_);
 }
 
 /// The segments that can change pixels of a tile.
@@ -72,7 +88,8 @@ void LineDrawer::gather(const Tile& tile, const std::vector<std::vector<ColoredS
 /// side's colour.
 void LineDrawer::smooth(const Tile& tile, const ColoredSegment& line) {
     const Segment& segment = line.segment;
-    if (!segment.spans_cell) return;
+    // The two sides of a line on a smooth surface have one colour.
+    if (!segment.spans_cell || segment.type == LineType::mesh) return;
     const Vec2f d = segment.b - segment.a;
     const float length = std::sqrt(d.x * d.x + d.y * d.y);
     if (length == 0.0F) return;

@@ -6,6 +6,7 @@
 
 #include "base/lanes.h"
 #include "lines/ink.h"
+#include "lines/line_planes.h"
 #include "render/edges_method.h"
 #include "render/tiles.h"
 
@@ -31,10 +32,13 @@ class LineDrawer {
     void write(const Tile& tile);
 
     void ink(const Segment& segment);
+    float width_scale_at(const Segment& segment) const;
+    void write_planes(const Tile& tile);
 
     const Edges& edges_;
     const LineDensity& density_;
     InkTile ink_;
+    LinePlanes planes_;
     std::vector<const ColoredSegment*> near_;  ///< segments within reach of the tile
     /// What smoothing adds to each pixel's colour: linear, premultiplied R, G, B, A. In fixed
     /// point, for a sum that does not depend on the order of segments, and so not on the tiles.

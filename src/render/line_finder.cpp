@@ -184,9 +184,11 @@ std::array<float, 4> LineFinder::color_at(int i, int j) const {
 std::vector<ColoredSegment> LineFinder::find_lines() {
     const Timer timer(stats_.lines_ms);
     if (!edges_.draw_lines && !edges_.smooth_shading) return {};
+    if (edges_.wants_faces()) fill_faces();
     detect(grid_, edges_.detect, suspects_);
-    std::erase_if(suspects_, [&](const SuspectEdge& edge) { return is_smooth(edge); });
-    locator_.locate(grid_, suspects_, ball_, sample_, crossings_);
+    sort_out_suspects();
+    locator_.locate(grid_, std::span(suspects_).first(located_), describe_, sample_, crossings_);
+    if (edges_.wants_faces()) cross_faces();
     connector_.connect(grid_, suspects_, crossings_, segments_);
     stats_.crossings += crossings_.size();
 
@@ -199,8 +201,7 @@ std::vector<ColoredSegment> LineFinder::find_lines() {
         };
         found.push_back({segment, color(segment.left_sample), color(segment.right_sample)});
         if (edges_.draw_lines && edges_.wanted.has(segment.type)) {
-            const auto type = static_cast<std::size_t>(segment.type);
-            density_.add(segment, edges_.ink.styles[type].width_px);
+            density_.add(segment, edges_.ink.styles[edges_.style_of(segment)].width_px);
         }
     }
     return found;
@@ -208,7 +209,7 @@ std::vector<ColoredSegment> LineFinder::find_lines() {
 
 /// Whether the scene rules out a line that the samples alone let suspect.
 bool LineFinder::is_smooth(const SuspectEdge& edge) const {
-    if (edge.suspicion == Suspicion::id) return false;
+    if (edge.suspicion == Suspicion::id || edge.suspicion == Suspicion::face) return false;
     const LatticeHit a = hit_at(edge.i, edge.j);
     const LatticeHit b = edge.down ? hit_at(edge.i, edge.j + 1) : hit_at(edge.i + 1, edge.j);
     return edges_.surfaces.smooth_between(*a.hits, a.lane, *b.hits, b.lane);
@@ -220,11 +221,67 @@ LineFinder::LatticeHit LineFinder::hit_at(int i, int j) const {
             j % kBlockSide * kBlockSide + i % kBlockSide};
 }
 
-Ball LineFinder::ball_at(std::size_t point) const {
-    if (grid_.id[point] == kBackground) return {};
+void LineFinder::describe(std::size_t point, Sample& sample) const {
+    if (sample.id == kBackground) return;
     const auto width = static_cast<std::size_t>(grid_.width);
     const LatticeHit hit = hit_at(static_cast<int>(point % width), static_cast<int>(point / width));
-    return edges_.surfaces.ball(*hit.hits, hit.lane);
+    edges_.surfaces.describe(*hit.hits, hit.lane, sample);
+}
+
+void LineFinder::fill_faces() {
+    grid_.face.assign(grid_.id.size(), 0);
+    Lanes<std::uint32_t> faces;
+    for (std::size_t k = 0; k < blocks_.size(); ++k) {
+        edges_.surfaces.faces(hits_[k], faces);
+        const int i0 = blocks_[k].x - grid_.x0;
+        const int j0 = blocks_[k].y - grid_.y0;
+        for (int j = 0; j < blocks_[k].rows; ++j) {
+            std::copy_n(faces.data() + j * kBlockSide, blocks_[k].columns,
+                        grid_.face.data() + grid_.index(i0, j0 + j));
+        }
+    }
+}
+
+/// Drops the suspects that the scene rules out, and puts those between two faces last: they need no
+/// samples.
+void LineFinder::sort_out_suspects() {
+    for (SuspectEdge& edge : suspects_) {
+        if (is_smooth(edge)) edge.suspicion = Suspicion::face;
+    }
+    const auto others = std::ranges::stable_partition(
+        suspects_, [](const SuspectEdge& edge) { return edge.suspicion != Suspicion::face; });
+    located_ = static_cast<std::size_t>(others.begin() - suspects_.begin());
+    if (!edges_.wants_faces()) suspects_.resize(located_);
+}
+
+/// Adds the lines between faces of a mesh where there is no other line.
+void LineFinder::cross_faces() {
+    constexpr GeometryId kFaceNumber = 0x80000000U;  // so that it equals no ID
+    crossed_.assign(suspects_.size(), 0);
+    for (const Crossing& crossing : crossings_) crossed_[crossing.edge] = 1;
+    for (std::uint32_t k = 0; k < suspects_.size(); ++k) {
+        const SuspectEdge& edge = suspects_[k];
+        const int i = edge.i + (edge.down ? 0 : 1);
+        const int j = edge.j + (edge.down ? 1 : 0);
+        const std::size_t first = grid_.index(edge.i, edge.j);
+        const std::size_t second = grid_.index(i, j);
+        if (crossed_[k] != 0 || grid_.face[first] == grid_.face[second]) continue;
+        const LatticeHit a = hit_at(edge.i, edge.j);
+        const LatticeHit b = hit_at(i, j);
+        const Vec2f from = grid_.point(edge.i, edge.j);
+        const Vec2f to = grid_.point(i, j);
+        const float at = edges_.surfaces.face_crossing(edges_.viewpoint, from, *a.hits, a.lane, to,
+                                                       *b.hits, b.lane);
+        Crossing crossing;
+        crossing.point = from + (to - from) * at;
+        crossing.type = LineType::mesh;
+        crossing.t = grid_.t[first] + at * (grid_.t[second] - grid_.t[first]);
+        crossing.edge = k;
+        crossing.first = kFaceNumber | grid_.face[first];
+        crossing.second = kFaceNumber | grid_.face[second];
+        crossing.nearer = grid_.id[first];
+        crossings_.push_back(crossing);
+    }
 }
 
 /// More samples, for the bisection.
@@ -242,11 +299,12 @@ void LineFinder::sample(std::span<const Vec2f> points, std::span<Sample> out) {
         const std::size_t count = std::min<std::size_t>(kLanes, points.size() - first);
         for (std::size_t n = 0; n < count; ++n) {
             const int i = static_cast<int>(n);
-            out[sampler_.order()[first + n]] = {ids[i],
-                                                {values[0][i], values[1][i], values[2][i]},
-                                                {values[3][i], values[4][i], values[5][i]},
-                                                values[6][i],
-                                                edges_.surfaces.ball(point_hits_[k], i)};
+            Sample& sample = out[sampler_.order()[first + n]];
+            sample = {ids[i],
+                      {values[0][i], values[1][i], values[2][i]},
+                      {values[3][i], values[4][i], values[5][i]},
+                      values[6][i]};
+            edges_.surfaces.describe(point_hits_[k], i, sample);
         }
     }
 }

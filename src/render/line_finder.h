@@ -30,7 +30,7 @@ class LineFinder {
           sample_([this](std::span<const Vec2f> points, std::span<Sample> out) {
               sample(points, out);
           }),
-          ball_([this](std::size_t point) { return ball_at(point); }),
+          describe_([this](std::size_t point, Sample& sample) { describe(point, sample); }),
           density_(edges.no_lines) {}
 
     /// Design: trace the lattice, detect, locate, connect. Shades the tile's pixels on the way.
@@ -63,7 +63,10 @@ class LineFinder {
     };
     LatticeHit hit_at(int i, int j) const;
     bool is_smooth(const SuspectEdge& edge) const;
-    Ball ball_at(std::size_t point) const;
+    void describe(std::size_t point, Sample& sample) const;
+    void fill_faces();
+    void sort_out_suspects();
+    void cross_faces();
     std::uint32_t block_index(int i, int j) const;
     std::array<float, 4> color_at(int i, int j) const;
 
@@ -74,7 +77,7 @@ class LineFinder {
     Sampler pixel_sampler_;
     Locator locator_;
     SampleFunction sample_;
-    BallFunction ball_;
+    SurfaceFunction describe_;
     Connector connector_;
     SampleGrid grid_;
     int blocks_across_ = 0;
@@ -86,7 +89,9 @@ class LineFinder {
     std::vector<std::uint8_t> seen_;
     std::vector<HitPacket> point_hits_;
     std::vector<SuspectEdge> suspects_;
+    std::size_t located_ = 0;  ///< the first so many suspects are the locator's
     std::vector<Crossing> crossings_;
+    std::vector<std::uint8_t> crossed_;  ///< a suspect: whether it has a crossing
     std::vector<Segment> segments_;
     LineDensity density_;
     RenderStats stats_;

@@ -29,7 +29,14 @@ struct Pipeline {
           shader(scene, camera, all.shading),
           ids(scene, all.ids),
           film(target) {
-        if (!all.aovs.empty()) aovs.emplace(scene, camera, all.aovs, target);
+        if (!all.aovs.empty()) aovs.emplace(scene, camera, all.aovs, locates(), target);
+    }
+
+    /// Whether lines are located (method "edges"). Without lines and smoothing, both methods are
+    /// one ray a pixel.
+    bool locates() const {
+        return settings.method == Method::edges &&
+               (settings.draws_lines() || settings.smoothing().kind == AntiAliasing::Kind::edges);
     }
 
     const Scene& scene;

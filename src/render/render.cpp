@@ -48,11 +48,8 @@ Film render(const Scene& scene, const Tracer& tracer, const Settings& settings,
     Film film(settings.size, film_settings(settings, formats));
     const Pipeline pipeline(scene, tracer, settings, film);
     RenderStats result;
-    // Without lines and smoothing, both methods are one ray a pixel.
-    const bool locates =
-        settings.method == Method::edges &&
-        (settings.draws_lines() || settings.smoothing().kind == AntiAliasing::Kind::edges);
-    result = locates ? render_edges(pipeline, control) : render_stencils(pipeline, control);
+    result =
+        pipeline.locates() ? render_edges(pipeline, control) : render_stencils(pipeline, control);
     timer.reset();
     result.render_ms = render_ms;
     if (stats != nullptr) *stats = result;

@@ -12,50 +12,14 @@
 
 #include "base/error.h"
 #include "base/text.h"
+#include "render/values.h"
 
 namespace ink {
-
-double Length::pixels(double dpi, int picture_height) const {
-    switch (unit) {
-        case Unit::px: return value;
-        case Unit::pt: return value * dpi / 72.0;
-        case Unit::mm: return value * dpi / 25.4;
-        case Unit::percent: return value * picture_height / 100.0;
-    }
-    return value;
-}
 
 namespace {
 
 // Readers and printers of values. Readers throw UsageError without the setting's name; Table adds
 // it.
-
-double read_number(std::string_view text, double least, double most) {
-    const auto value = parse_double(text);
-    if (!value || !(*value >= least) || !(*value <= most)) {
-        throw UsageError(fmt::format("'{}' is not a number from {} to {}", text, least, most));
-    }
-    return *value;
-}
-
-int read_int(std::string_view text, int least, int most) {
-    const auto value = parse_int(text);
-    if (!value || *value < least || *value > most) {
-        throw UsageError(
-            fmt::format("'{}' is not a whole number from {} to {}", text, least, most));
-    }
-    return static_cast<int>(*value);
-}
-
-Rgb8 read_color(std::string_view text) {
-    const auto color = parse_color(text);
-    if (!color) {
-        throw UsageError(fmt::format(
-            "'{}' is not a colour; write a name such as white, #rrggbb, or r,g,b from 0 to 255",
-            text));
-    }
-    return *color;
-}
 
 Size read_size(std::string_view text) {
     // libpng, libtiff and libjpeg agree on this much; memory is checked with the other settings.
@@ -102,27 +66,6 @@ double read_view_height(std::string_view text) {
 }
 
 std::string print(Vec3d v) { return fmt::format("{},{},{}", v.x, v.y, v.z); }
-
-constexpr std::array<std::string_view, 4> kUnitNames{"px", "pt", "mm", "%"};
-
-Length read_length(std::string_view text) {
-    Length length;
-    std::string_view number = trim(text);
-    for (std::size_t unit = 0; unit < kUnitNames.size(); ++unit) {
-        if (!number.ends_with(kUnitNames[unit])) continue;
-        number.remove_suffix(kUnitNames[unit].size());
-        length.unit = static_cast<Length::Unit>(unit);
-        break;
-    }
-    const auto value = parse_double(number);
-    if (!value || !(*value > 0.0) || !std::isfinite(*value)) {
-        throw UsageError(fmt::format(
-            "'{}' is not a width; write a positive number with px, pt, mm or %, as in 2px or 0.5pt",
-            text));
-    }
-    length.value = *value;
-    return length;
-}
 
 /// A closed list of words and what they stand for.
 template <class T>
@@ -188,10 +131,14 @@ const Words<View> kViews{{{"auto", View::automatic},
                           {"bottom", View::bottom},
                           {"iso", View::iso}}};
 const Words<Method> kMethods{{{"edges", Method::edges}, {"stencil", Method::stencil}}};
-const Words<LineType> kLineTypes{{{"silhouette", LineType::silhouette},
-                                  {"intersection", LineType::intersection},
-                                  {"self-occlusion", LineType::self_occlusion},
-                                  {"crease", LineType::crease}}};
+const Words<LineType> kLineTypeWords = [] {
+    Words<LineType> words;
+    for (int type = 0; type < kLineTypes; ++type) {
+        const auto line_type = static_cast<LineType>(type);
+        words.entries.emplace_back(name_of(line_type), line_type);
+    }
+    return words;
+}();
 const Words<IdLevel> kIdLevels{
     {{"primitive", IdLevel::primitive}, {"part", IdLevel::part}, {"object", IdLevel::object}}};
 const Words<NormalSource> kNormalSources{{{"auto", NormalSource::automatic},
@@ -254,10 +201,10 @@ std::string print(const AntiAliasing& aa) {
 std::string print(LineTypes types) {
     if (types == LineTypes::all()) return "all";
     std::vector<LineType> list;
-    for (const auto& [word, type] : kLineTypes.entries) {
+    for (const auto& [word, type] : kLineTypeWords.entries) {
         if (types.has(type)) list.push_back(type);
     }
-    return kLineTypes.print_list(list);
+    return kLineTypeWords.print_list(list);
 }
 
 void read_background(Settings& settings, std::string_view text) {
@@ -353,11 +300,11 @@ std::vector<Setting> make_table() {
          [](S& s, Text t) { s.method = kMethods.read(t); },
          [](const S& s) { return kMethods.print(s.method); }},
         {"lines", "Lines", "LIST",
-         "silhouette, intersection, self-occlusion, crease, all or none; method stencil draws the "
-         "first two, both for either",
+         "silhouette, intersection, self-occlusion, crease, boundary, mesh, all or none; method "
+         "stencil draws the first two, both for either",
          [](S& s, Text t) {
              LineTypes types;
-             for (const LineType type : kLineTypes.read_list(t)) types.add(type);
+             for (const LineType type : kLineTypeWords.read_list(t)) types.add(type);
              s.lines = types;
          },
          [](const S& s) { return print(s.lines); }},
@@ -367,10 +314,7 @@ std::vector<Setting> make_table() {
          [](const S& s) { return fmt::format("{}", s.lattice); }},
         {"line-width", "Lines", "LEN", "Width in px, pt, mm or % of the picture's height",
          [](S& s, Text t) { s.line_width = read_length(t); },
-         [](const S& s) {
-             return fmt::format("{}{}", s.line_width.value,
-                                kUnitNames[static_cast<std::size_t>(s.line_width.unit)]);
-         }},
+         [](const S& s) { return print(s.line_width); }},
         {"line-density", "Lines", "F",
          "Method edges: share of an area that lines may cover; denser ones get thinner, 1 lets "
          "them "
@@ -380,6 +324,14 @@ std::vector<Setting> make_table() {
         {"line-color", "Lines", "COLOR", "Colour of the lines",
          [](S& s, Text t) { s.line_color = read_color(t); },
          [](const S& s) { return to_string(s.line_color); }},
+        {"line", "Lines", "RULE",
+         "Method edges: TYPE:width=LEN,color=COLOR,opacity=F for lines of one type, or all; "
+         "TYPE@K:... for those of the K-th object alone; may be repeated",
+         [](S& s, Text t) {
+             if (t.empty()) return s.line_rules.clear();
+             for (LineRule& rule : read_line_rules(t)) s.line_rules.push_back(rule);
+         },
+         [](const S& s) { return print(s.line_rules); }, true},
         {"ids", "Lines", "LEVEL",
          "Between what lines run: primitive (atoms, particles, triangles), part (chains, groups), "
          "part:chain, part:residue, part:entity, part:element, part:FIELD or object; by default "
@@ -479,8 +431,8 @@ int plane_count(Aov aov) {
         case Aov::id:
         case Aov::normal:
         case Aov::position: return 3;
-        case Aov::depth:
-        case Aov::lines: return 1;
+        case Aov::depth: return 1;
+        case Aov::lines: return 5;
     }
     return 0;
 }
@@ -532,11 +484,16 @@ int Settings::lattice_points() const {
 
 void validate(const Settings& settings, int color_bytes) {
     check_memory(settings, color_bytes);
-    const double width = settings.line_width_px();
-    constexpr double kWidest = 1000.0;
-    if (!(width <= kWidest)) {
+    const auto check_width = [&](std::string_view name, const Length& length) {
+        const double width = length.pixels(settings.dpi, settings.size.height);
+        constexpr double kWidest = 1000.0;
+        if (width <= kWidest) return;
         throw UsageError(
-            fmt::format("--line-width: comes to {:.0f} pixels; the most is {}", width, kWidest));
+            fmt::format("--{}: comes to {:.0f} pixels; the most is {}", name, width, kWidest));
+    };
+    check_width("line-width", settings.line_width);
+    for (const LineRule& rule : settings.line_rules) {
+        if (rule.width) check_width("line", *rule.width);
     }
 }
 

@@ -15,20 +15,13 @@
 #include "lines/line_type.h"
 #include "lines/stencil_features.h"
 #include "lines/strength.h"
+#include "render/line_styles.h"
+#include "render/values.h"
 #include "scene/data_settings.h"
 #include "scene/ids.h"
 #include "shading/shading.h"
 
 namespace ink {
-
-/// A length on the picture, in the unit that it was given in.
-struct Length {
-    enum class Unit : std::uint8_t { px, pt, mm, percent };  ///< percent of the picture's height
-    double value = 0.0;
-    Unit unit = Unit::px;
-
-    double pixels(double dpi, int picture_height) const;
-};
 
 enum class Method : std::uint8_t { edges, stencil };
 
@@ -59,10 +52,11 @@ struct Settings {
     ViewSettings view;
 
     Method method = Method::edges;
-    LineTypes lines = LineTypes::all();
+    LineTypes lines = LineTypes::usual();
     int lattice = 1;  ///< points along a pixel's side, for method "edges"
     Length line_width{3.0, Length::Unit::px};
     Rgb8 line_color{0, 0, 0};
+    std::vector<LineRule> line_rules;  ///< for single types and objects; later ones win
     /// Share of an area that lines may cover; where they would cover more, they get thinner. 1:
     /// they never do. Chosen by eye on ribosomes and capsids at 256 to 1024 pixels.
     double line_density = 0.75;
@@ -103,6 +97,7 @@ struct Setting {
     std::function<void(Settings&, std::string_view)> set;
     /// The value in the form that `set` reads; empty for "chosen automatically".
     std::function<std::string(const Settings&)> get;
+    bool repeatable = false;  ///< `set` adds to what is there; an empty value clears it
 };
 
 /// Rows of topic "Input": what of a file is drawn, and as what (data_settings.cpp).

@@ -81,4 +81,9 @@ GeometryId LineIds::resolve(std::uint32_t object, std::uint32_t primitive) const
     return own.first + (own.groups != nullptr ? (*own.groups)[primitive] : own.stride * primitive);
 }
 
+std::size_t LineIds::object_of(GeometryId id) const {
+    const auto after = std::ranges::upper_bound(objects_, id, {}, &ObjectIds::first);
+    return static_cast<std::size_t>(after - objects_.begin()) - 1;
+}
+
 }  // namespace ink

@@ -26,6 +26,9 @@ class LineIds {
     void resolve(const HitPacket& hits, Lanes<GeometryId>& ids) const;
     GeometryId resolve(std::uint32_t object, std::uint32_t primitive) const;
 
+    /// Index of the object that an ID belongs to, which must not be the background's.
+    std::size_t object_of(GeometryId id) const;
+
   private:
     LineIds() = default;
     void add(const Object& object, IdLevel level, GeometryId& next);

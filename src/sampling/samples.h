@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -27,6 +28,9 @@ struct Sample {
     Vec3f normal;    ///< shading normal, unit, faces the viewer; unset on a miss
     float t = 0.0F;  ///< distance along the ray from the plane on which all rays start, scene units
     Ball ball{};
+    /// Distance to the nearest open edge of the triangle that was hit, scene units; infinite where
+    /// it has none.
+    float rim = std::numeric_limits<float>::infinity();
 };
 
 /// From where rays come.
@@ -50,8 +54,8 @@ struct Viewpoint {
 /// Asks for samples at points of the screen (pixels): as many out as in.
 using SampleFunction = std::function<void(std::span<const Vec2f> points, std::span<Sample> out)>;
 
-/// Asks for the ball that a point of a grid saw, by its index.
-using BallFunction = std::function<Ball(std::size_t point)>;
+/// Adds to a sample of a grid, by its index, what the grid does not keep: ball and rim.
+using SurfaceFunction = std::function<void(std::size_t point, Sample& sample)>;
 
 /// Samples at the points of a regular lattice of q x q a pixel, plane by plane. Point (i, j) of the
 /// grid is lattice point (x0 + i, y0 + j), at ((x0 + i + 1/2) / q, (y0 + j + 1/2) / q) on screen.
@@ -64,6 +68,9 @@ struct SampleGrid {
     std::vector<float> px, py, pz;  ///< position
     std::vector<float> nx, ny, nz;  ///< normal
     std::vector<float> t;
+    /// Of the mesh that was hit, its face; 0 elsewhere. Empty unless lines between faces are
+    /// wanted.
+    std::vector<std::uint32_t> face;
 
     void resize(int new_width, int new_height) {
         width = new_width;
@@ -81,7 +88,7 @@ struct SampleGrid {
         return {(static_cast<float>(x0 + i) + 0.5F) * spacing,
                 (static_cast<float>(y0 + j) + 0.5F) * spacing};
     }
-    /// Without the ball, which the grid does not keep.
+    /// Without ball and rim, which the grid does not keep.
     Sample sample(std::size_t k) const {
         return {id[k], {px[k], py[k], pz[k]}, {nx[k], ny[k], nz[k]}, t[k]};
     }

@@ -1,5 +1,8 @@
 #include "sampling/surfaces.h"
 
+#include <algorithm>
+#include <array>
+#include <limits>
 #include <variant>
 
 namespace ink {
@@ -19,14 +22,77 @@ bool shows_front(const Mesh& mesh, const Mesh::Triangle& triangle, Vec3f normal)
     return dot(cross(b - a, c - a), normal) > 0.0F;
 }
 
+/// From a hit to the nearest open edge of its triangle.
+float rim_distance(const Mesh& mesh, const HitPacket& hits, int lane) {
+    float least = std::numeric_limits<float>::infinity();
+    const std::uint32_t triangle = hits.primitive[lane];
+    const Mesh::Triangle& corners = mesh.triangles[triangle];
+    const std::array<float, 3> weights{1.0F - hits.u[lane] - hits.v[lane], hits.u[lane],
+                                       hits.v[lane]};
+    for (std::size_t k = 0; k < 3; ++k) {
+        if (!mesh.is_boundary(triangle, k)) continue;
+        // The weight of the corner across falls to zero over the triangle's height.
+        const Vec3f a = mesh.vertices[corners[k]];
+        const Vec3f b = mesh.vertices[corners[(k + 1) % 3]];
+        const Vec3f c = mesh.vertices[corners[(k + 2) % 3]];
+        const float height = length(cross(b - a, c - a)) / length(b - a);
+        least = std::min(least, weights[(k + 2) % 3] * height);
+    }
+    return least;
+}
+
+/// Where the way from screen point `from`, which sees the triangle, to `to` leaves it, in [0, 1].
+double way_out_of_triangle(const Viewpoint& viewpoint, const Mesh& mesh,
+                           const Mesh::Triangle& triangle, Vec2f from, Vec2f to) {
+    const Vec3d origin_0 = viewpoint.origin(from);
+    const Vec3d origin_1 = viewpoint.origin(to);
+    const Vec3d direction_0 = viewpoint.direction(from);
+    const Vec3d direction_1 = viewpoint.direction(to);
+    double out = 1.0;
+    for (std::size_t k = 0; k < 3; ++k) {
+        const Vec3d a = to_double(mesh.vertices[triangle[k]]);
+        const Vec3d edge = to_double(mesh.vertices[triangle[(k + 1) % 3]]) - a;
+        // On which side of the edge a ray passes; along the way this is linear.
+        const double side_0 = dot(cross(direction_0, edge), origin_0 - a);
+        const double side_1 = dot(cross(direction_1, edge), origin_1 - a);
+        if ((side_0 > 0.0) == (side_1 > 0.0)) continue;
+        out = std::min(out, side_0 / (side_0 - side_1));
+    }
+    return out;
+}
+
 }  // namespace
 
-Ball Surfaces::ball(const HitPacket& hits, int lane) const {
-    if (hits.object[lane] == kNoObject) return {};
-    const auto* spheres = std::get_if<Spheres>(&scene_.objects()[hits.object[lane]].shape);
-    if (spheres == nullptr) return {};
-    const Sphere& sphere = spheres->spheres[hits.primitive[lane]];
-    return {sphere.centre, sphere.radius};
+void Surfaces::describe(const HitPacket& hits, int lane, Sample& sample) const {
+    if (hits.object[lane] == kNoObject) return;
+    const Shape& shape = scene_.objects()[hits.object[lane]].shape;
+    if (const auto* spheres = std::get_if<Spheres>(&shape)) {
+        const Sphere& sphere = spheres->spheres[hits.primitive[lane]];
+        sample.ball = {sphere.centre, sphere.radius};
+    } else if (const auto* mesh = std::get_if<Mesh>(&shape)) {
+        if (!mesh->edge_flags.empty()) sample.rim = rim_distance(*mesh, hits, lane);
+    }
+}
+
+void Surfaces::faces(const HitPacket& hits, Lanes<std::uint32_t>& faces) const {
+    for (int i = 0; i < kLanes; ++i) {
+        faces[i] = 0;
+        if (hits.object[i] == kNoObject) continue;
+        const auto* mesh = std::get_if<Mesh>(&scene_.objects()[hits.object[i]].shape);
+        if (mesh == nullptr) continue;
+        faces[i] = mesh->faces.empty() ? hits.primitive[i] : mesh->faces[hits.primitive[i]];
+    }
+}
+
+float Surfaces::face_crossing(const Viewpoint& viewpoint, Vec2f a, const HitPacket& hits_a,
+                              int lane_a, Vec2f b, const HitPacket& hits_b, int lane_b) const {
+    const auto& mesh = std::get<Mesh>(scene_.objects()[hits_a.object[lane_a]].shape);
+    const auto way_out = [&](Vec2f from, Vec2f to, std::uint32_t triangle) {
+        return way_out_of_triangle(viewpoint, mesh, mesh.triangles[triangle], from, to);
+    };
+    const double leaves = way_out(a, b, hits_a.primitive[lane_a]);
+    const double enters = 1.0 - way_out(b, a, hits_b.primitive[lane_b]);
+    return static_cast<float>(std::clamp(0.5 * (leaves + enters), 0.0, 1.0));
 }
 
 bool Surfaces::smooth_between(const HitPacket& a, int lane_a, const HitPacket& b,

@@ -14,8 +14,17 @@ class Surfaces {
     /// `normals`: which ones creases are found by, of objects that name none of their own.
     Surfaces(const Scene& scene, NormalSource normals) : scene_(scene), normals_(normals) {}
 
-    /// The sphere that was hit from outside, if it was one.
-    Ball ball(const HitPacket& hits, int lane) const;
+    /// Adds the sphere or the open edge that a hit lies on.
+    void describe(const HitPacket& hits, int lane, Sample& sample) const;
+
+    /// Faces of the meshes that were hit; 0 elsewhere.
+    void faces(const HitPacket& hits, Lanes<std::uint32_t>& faces) const;
+
+    /// Where the line between the faces of two hits on one mesh crosses the way from screen point a
+    /// to b, in [0, 1]: where the way leaves the first triangle and enters the second by edges that
+    /// bound their faces; in the middle of the two if other faces lie between.
+    float face_crossing(const Viewpoint& viewpoint, Vec2f a, const HitPacket& hits_a, int lane_a,
+                        Vec2f b, const HitPacket& hits_b, int lane_b) const;
 
     /// Whether no line can run between two hits that are neighbours on screen: they lie on one
     /// sphere, one triangle, or two triangles that share an edge which is no crease, and neither of

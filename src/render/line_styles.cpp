@@ -1,0 +1,99 @@
+#include "render/line_styles.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "base/error.h"
+#include "base/text.h"
+
+namespace ink {
+
+namespace {
+
+constexpr std::array<std::string_view, kLineTypes> kNames{
+    "silhouette", "intersection", "self-occlusion", "crease", "boundary", "mesh"};
+
+constexpr int kMostObjects = 1 << 24;
+
+void read_target(std::string_view text, LineRule& rule) {
+    const std::size_t at = text.find('@');
+    if (at != std::string_view::npos) rule.object = read_int(text.substr(at + 1), 1, kMostObjects);
+    const std::string_view type = trim(text.substr(0, at));
+    if (type != "all") rule.type = read_line_type(type);
+}
+
+void read_property(std::string_view key, std::string_view value, LineRule& rule) {
+    if (key == "width") {
+        rule.width = read_length(value);
+    } else if (key == "color") {
+        rule.color = read_color(value);
+    } else if (key == "opacity") {
+        rule.opacity = read_number(value, 0.0, 1.0);
+    } else {
+        throw UsageError(fmt::format("'{}' is not one of width, color, opacity", key));
+    }
+}
+
+LineRule read_rule(std::string_view text) {
+    const std::size_t colon = text.find(':');
+    if (colon == std::string_view::npos) {
+        throw UsageError(fmt::format(
+            "'{}' has no colon; write TYPE:key=value,... as in crease:width=1px,color=gray", text));
+    }
+    LineRule rule;
+    read_target(text.substr(0, colon), rule);
+    // A colour may have commas of its own: what has no '=' goes on with the value before it.
+    std::vector<std::pair<std::string_view, std::string>> properties;
+    for (const std::string_view part : split(text.substr(colon + 1), ',')) {
+        const std::size_t equals = part.find('=');
+        if (equals != std::string_view::npos) {
+            properties.emplace_back(trim(part.substr(0, equals)), part.substr(equals + 1));
+        } else if (!properties.empty()) {
+            properties.back().second += fmt::format(",{}", part);
+        } else {
+            throw UsageError(fmt::format("'{}' is not of the form key=value", part));
+        }
+    }
+    for (const auto& [key, value] : properties) read_property(key, value, rule);
+    return rule;
+}
+
+std::string print(const LineRule& rule) {
+    std::vector<std::string> properties;
+    if (rule.width) properties.push_back(fmt::format("width={}", print(*rule.width)));
+    if (rule.color) properties.push_back(fmt::format("color={}", to_string(*rule.color)));
+    if (rule.opacity) properties.push_back(fmt::format("opacity={}", *rule.opacity));
+    return fmt::format("{}{}:{}", rule.type ? name_of(*rule.type) : "all",
+                       rule.object > 0 ? fmt::format("@{}", rule.object) : "",
+                       fmt::join(properties, ","));
+}
+
+}  // namespace
+
+std::string_view name_of(LineType type) { return kNames[static_cast<std::size_t>(type)]; }
+
+LineType read_line_type(std::string_view text) {
+    const auto found = std::ranges::find(kNames, text);
+    if (found == kNames.end()) {
+        throw UsageError(fmt::format("'{}' is not one of {}, all", text, fmt::join(kNames, ", ")));
+    }
+    return static_cast<LineType>(found - kNames.begin());
+}
+
+std::vector<LineRule> read_line_rules(std::string_view text) {
+    std::vector<LineRule> rules;
+    for (const std::string_view rule : split(text, ';')) rules.push_back(read_rule(rule));
+    return rules;
+}
+
+std::string print(const std::vector<LineRule>& rules) {
+    std::vector<std::string> texts;
+    for (const LineRule& rule : rules) texts.push_back(print(rule));
+    return fmt::format("{}", fmt::join(texts, ";"));
+}
+
+}  // namespace ink

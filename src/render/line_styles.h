@@ -1,0 +1,39 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "base/color.h"
+#include "lines/line_type.h"
+#include "render/values.h"
+
+namespace ink {
+
+/// How lines of one type, of one object, or both differ from the others. What is left open stays
+/// as it is.
+struct LineRule {
+    std::optional<LineType> type;  ///< of every type if open
+    int object = 0;                ///< counted from 1 in the order of the scene; 0: of every object
+    std::optional<Length> width;
+    std::optional<Rgb8> color;
+    std::optional<double> opacity;  ///< [0, 1]
+
+    bool applies(LineType of_type, int of_object) const {
+        return (!type || *type == of_type) && (object == 0 || object == of_object);
+    }
+};
+
+/// The name of a type as users write it.
+std::string_view name_of(LineType type);
+/// Throws UsageError for a name that is none.
+LineType read_line_type(std::string_view text);
+
+/// Reads "TYPE[@OBJECT]:key=value,...", several with semicolons between. TYPE is a line type or
+/// all; keys are width, color and opacity. Throws UsageError.
+std::vector<LineRule> read_line_rules(std::string_view text);
+/// In the form that read_line_rules reads.
+std::string print(const std::vector<LineRule>& rules);
+
+}  // namespace ink

@@ -1,0 +1,79 @@
+#include "render/values.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+
+#include "base/error.h"
+#include "base/text.h"
+
+namespace ink {
+
+double Length::pixels(double dpi, int picture_height) const {
+    switch (unit) {
+        case Unit::px: return value;
+        case Unit::pt: return value * dpi / 72.0;
+        case Unit::mm: return value * dpi / 25.4;
+        case Unit::percent: return value * picture_height / 100.0;
+    }
+    return value;
+}
+
+namespace {
+
+constexpr std::array<std::string_view, 4> kUnitNames{"px", "pt", "mm", "%"};
+
+}  // namespace
+
+double read_number(std::string_view text, double least, double most) {
+    const auto value = parse_double(text);
+    if (!value || !(*value >= least) || !(*value <= most)) {
+        throw UsageError(fmt::format("'{}' is not a number from {} to {}", text, least, most));
+    }
+    return *value;
+}
+
+int read_int(std::string_view text, int least, int most) {
+    const auto value = parse_int(text);
+    if (!value || *value < least || *value > most) {
+        throw UsageError(
+            fmt::format("'{}' is not a whole number from {} to {}", text, least, most));
+    }
+    return static_cast<int>(*value);
+}
+
+Rgb8 read_color(std::string_view text) {
+    const auto color = parse_color(text);
+    if (!color) {
+        throw UsageError(fmt::format(
+            "'{}' is not a colour; write a name such as white, #rrggbb, or r,g,b from 0 to 255",
+            text));
+    }
+    return *color;
+}
+
+Length read_length(std::string_view text) {
+    Length length;
+    std::string_view number = trim(text);
+    for (std::size_t unit = 0; unit < kUnitNames.size(); ++unit) {
+        if (!number.ends_with(kUnitNames[unit])) continue;
+        number.remove_suffix(kUnitNames[unit].size());
+        length.unit = static_cast<Length::Unit>(unit);
+        break;
+    }
+    const auto value = parse_double(number);
+    if (!value || !(*value > 0.0) || !std::isfinite(*value)) {
+        throw UsageError(fmt::format(
+            "'{}' is not a width; write a positive number with px, pt, mm or %, as in 2px or 0.5pt",
+            text));
+    }
+    length.value = *value;
+    return length;
+}
+
+std::string print(const Length& length) {
+    return fmt::format("{}{}", length.value, kUnitNames[static_cast<std::size_t>(length.unit)]);
+}
+
+}  // namespace ink
