@@ -323,14 +323,14 @@ TEST(ScreenTracer, LeavesInactiveRaysAlone) {
     const auto frame = tracer->frame(seen.camera().projection(), 1);
     const auto tile = frame->tile_tracer();
     tile->enter(seen.whole());
-    const std::vector<PointPacket> points = seen.pixels();
+    std::vector<PointPacket> points = seen.pixels();
     for (std::size_t k = 0; k < points.size(); k += 11) {
         RayPacket rays{};
         seen.camera().make_rays(points[k].x, points[k].y, rays);
-        for (int i = 0; i < kLanes; ++i) rays.active[i] = i % 3 == 0 ? 0 : -1;
+        const HitPacket all = seen.trace({points[k]})[0];
+        for (int i = 0; i < kLanes; ++i) points[k].active[i] = i % 3 == 0 ? 0 : -1;
         HitPacket hits;
         tile->intersect(std::span(&points[k], 1), std::span(&rays, 1), std::span(&hits, 1));
-        const HitPacket all = seen.trace({points[k]})[0];
         for (int i = 0; i < kLanes; ++i) {
             EXPECT_EQ(hits.object[i], i % 3 == 0 ? kNoObject : all.object[i]);
             EXPECT_EQ(hits.t[i], i % 3 == 0 ? kInfinity : all.t[i]);

@@ -150,7 +150,7 @@ void intersect_triangles(const TrianglePacket& packet, std::uint32_t first, Fron
 }
 
 void start_front(float centre_x, float centre_y, float slope_step, const PointPacket& points,
-                 const Lanes<std::int32_t>& active, Front& front) {
+                 Front& front) {
     const auto infinity = set(kInfinity);
     const auto minus_infinity = set(-kInfinity);
     auto left = infinity;
@@ -160,7 +160,8 @@ void start_front(float centre_x, float centre_y, float slope_step, const PointPa
     auto farthest = minus_infinity;
     for (int i = 0; i < kLanes; i += kStep) {
         const auto on = hn::RebindMask(
-            kFloats, hn::Ne(load(active, i), hn::Zero(hn::CappedTag<std::int32_t, kLanes>())));
+            kFloats,
+            hn::Ne(load(points.active, i), hn::Zero(hn::CappedTag<std::int32_t, kLanes>())));
         const auto x = hn::Sub(load(points.x, i), set(centre_x));
         const auto y = hn::Sub(load(points.y, i), set(centre_y));
         const auto slope_x = hn::Mul(x, set(slope_step));
@@ -261,6 +262,22 @@ void resolve_front(const Front& front, const RayPacket& rays, const HitRecord* r
     }
 }
 
+void identify_front(const Front& front, const HitRecord* records, HitPacket& hits) {
+    LaneBits hit_lanes = 0;
+    for (int i = 0; i < kLanes; i += kStep) {
+        const auto depth = load(front.depth, i);
+        const auto hit = hn::And(hn::Lt(depth, set(kInfinity)), hn::Gt(depth, set(-kInfinity)));
+        hit_lanes |= bits(hit) << static_cast<unsigned>(i);
+        const auto t = hn::Div(depth, hn::Sqrt(load(front.foreshortening, i)));
+        hn::Store(hn::IfThenElse(hit, t, set(kInfinity)), kFloats, hits.t.data() + i);
+    }
+    for (int i = 0; i < kLanes; ++i) {
+        const bool hit = (hit_lanes >> static_cast<unsigned>(i) & 1U) != 0;
+        hits.object[i] = hit ? records[front.winner[i]].object : kNoObject;
+        hits.primitive[i] = hit ? records[front.winner[i]].primitive : kNoObject;
+    }
+}
+
 }  // namespace ink::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
@@ -269,6 +286,7 @@ HWY_AFTER_NAMESPACE();
 namespace ink {
 
 HWY_EXPORT(find_overlap);
+HWY_EXPORT(identify_front);
 HWY_EXPORT(intersect_spheres);
 HWY_EXPORT(intersect_triangles);
 HWY_EXPORT(resolve_front);
@@ -290,15 +308,18 @@ void intersect(const Projection& /*projection*/, const TrianglePacket& packet, s
     HWY_DYNAMIC_DISPATCH(intersect_triangles)(packet, first, front);
 }
 
+void identify(const Front& front, const HitRecord* records, HitPacket& hits) {
+    HWY_DYNAMIC_DISPATCH(identify_front)(front, records, hits);
+}
+
 void resolve(const Front& front, const RayPacket& rays, const HitRecord* records, HitPacket& hits) {
     HWY_DYNAMIC_DISPATCH(resolve_front)(front, rays, records, hits);
 }
 
-void Front::start(const Projection& projection, const PointPacket& points,
-                  const Lanes<std::int32_t>& active) {
+void Front::start(const Projection& projection, const PointPacket& points) {
     HWY_DYNAMIC_DISPATCH(start_front)
     (projection.centre.x, projection.centre.y, static_cast<float>(projection.slope_step), points,
-     active, *this);
+     *this);
 }
 
 }  // namespace ink

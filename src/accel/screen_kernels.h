@@ -22,8 +22,7 @@ struct Front {
     Window window;                ///< bounds of the active points, largest depth of the hits
 
     /// Starts with no hits.
-    void start(const Projection& projection, const PointPacket& points,
-               const Lanes<std::int32_t>& active);
+    void start(const Projection& projection, const PointPacket& points);
 };
 
 /// Bit i is set for lane i of sixteen.
@@ -41,5 +40,7 @@ void intersect(const Projection& projection, const TrianglePacket& packet, std::
 
 /// The front as hits; `records` is indexed by winners.
 void resolve(const Front& front, const RayPacket& rays, const HitRecord* records, HitPacket& hits);
+/// The same without normals and barycentric coordinates, which are left as they are.
+void identify(const Front& front, const HitRecord* records, HitPacket& hits);
 
 }  // namespace ink

@@ -115,6 +115,9 @@ class ScreenTileTracer final : public TileTracer {
     void enter(const ScreenBox& area) override;
     void intersect(std::span<const PointPacket> points, std::span<const RayPacket> rays,
                    std::span<HitPacket> hits) override;
+    void identify(std::span<const PointPacket> points, std::span<const RayPacket> rays,
+                  std::span<HitPacket> hits) override;
+    bool needs_rays() const override { return false; }
 
   private:
     /// A cluster that reaches into the area.
@@ -168,9 +171,19 @@ void ScreenTileTracer::intersect(std::span<const PointPacket> points,
                                  std::span<const RayPacket> rays, std::span<HitPacket> hits) {
     Front front;
     for (std::size_t k = 0; k < points.size(); ++k) {
-        front.start(view_.projection, points[k], rays[k].active);
+        front.start(view_.projection, points[k]);
         find_front(front);
         resolve(front, rays[k], records_.data(), hits[k]);
+    }
+}
+
+void ScreenTileTracer::identify(std::span<const PointPacket> points,
+                                std::span<const RayPacket> /*rays*/, std::span<HitPacket> hits) {
+    Front front;
+    for (std::size_t k = 0; k < points.size(); ++k) {
+        front.start(view_.projection, points[k]);
+        find_front(front);
+        ink::identify(front, records_.data(), hits[k]);
     }
 }
 

@@ -44,6 +44,7 @@ enum class Coherence : std::uint8_t {
 /// Sixteen points of the screen, pixels.
 struct PointPacket {
     Lanes<float> x, y;
+    Lanes<std::int32_t> active = Lanes<std::int32_t>::filled(-1);  ///< as in RayPacket
 };
 
 struct ScreenBox {
@@ -62,6 +63,14 @@ class TileTracer {
     /// length.
     virtual void intersect(std::span<const PointPacket> points, std::span<const RayPacket> rays,
                            std::span<HitPacket> hits) = 0;
+
+    /// Finds t, object and primitive of the hits and no more. Rays may be left out unless
+    /// `needs_rays`.
+    virtual void identify(std::span<const PointPacket> points, std::span<const RayPacket> rays,
+                          std::span<HitPacket> hits) {
+        intersect(points, rays, hits);
+    }
+    virtual bool needs_rays() const { return true; }
 };
 
 /// The scene seen through one camera. Safe to use from many threads.

@@ -45,7 +45,7 @@ class Camera {
     float distance_from_eye(Vec2f point, float t) const;
 
     /// The same for hits of a packet of camera rays. Infinite on a miss.
-    INKTRACE_INLINE void distances_from_eye(const RayPacket& rays, const Lanes<float>& t,
+    INKTRACE_INLINE void distances_from_eye(const PointPacket& points, const Lanes<float>& t,
                                             Lanes<float>& distances) const;
 
     Vec3f right() const { return to_float(right_); }  ///< unit, scene frame
@@ -108,14 +108,15 @@ void Camera::make_rays(const Lanes<float>& x, const Lanes<float>& y, RayPacket& 
     }
 }
 
-void Camera::distances_from_eye(const RayPacket& rays, const Lanes<float>& t,
+void Camera::distances_from_eye(const PointPacket& points, const Lanes<float>& t,
                                 Lanes<float>& distances) const {
-    const Vec3f forward = to_float(-back_);
     const auto depth = static_cast<float>(start_depth_);
+    const auto step = static_cast<float>(projection_.slope_step);
+    const Vec2f centre = projection_.centre;
     for (int i = 0; i < kLanes; ++i) {
-        const float cosine =
-            rays.dir_x[i] * forward.x + rays.dir_y[i] * forward.y + rays.dir_z[i] * forward.z;
-        distances[i] = t[i] + depth / cosine;
+        const float x = (points.x[i] - centre.x) * step;
+        const float y = (points.y[i] - centre.y) * step;
+        distances[i] = t[i] + depth * std::sqrt(1.0F + x * x + y * y);
     }
 }
 

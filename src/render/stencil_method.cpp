@@ -60,11 +60,11 @@ struct Workspace {
 
     Sampler sampler;
     std::vector<Block> blocks, empty;
-    std::vector<HitPacket> hits;          ///< of the sample rays
-    std::vector<RayPacket> sample_rays;   ///< if self-occlusions are looked for
-    std::vector<ColorPacket> colors;      ///< c_s
-    std::vector<std::uint8_t> seen;       ///< 0: nothing but background
-    std::vector<Lanes<float>> strengths;  ///< e_s
+    std::vector<HitPacket> hits;             ///< of the sample rays
+    std::vector<PointPacket> sample_points;  ///< if self-occlusions are looked for
+    std::vector<ColorPacket> colors;         ///< c_s
+    std::vector<std::uint8_t> seen;          ///< 0: nothing but background
+    std::vector<Lanes<float>> strengths;     ///< e_s
     std::vector<PixelSums> sums;
     std::vector<HitPacket> stencil_hits;  ///< of the block at hand, one entry a stencil point
     RenderStats stats;
@@ -75,8 +75,8 @@ void trace_samples(const Stencils& stencils, Workspace& work, Vec2f offset) {
     work.hits.resize(work.blocks.size());
     work.sampler.trace_blocks(work.blocks, offset, work.hits);
     if (stencils.draw_lines && stencils.occlusions) {
-        const auto rays = work.sampler.packets();
-        work.sample_rays.assign(rays.begin(), rays.end());
+        const auto points = work.sampler.points();
+        work.sample_points.assign(points.begin(), points.end());
     }
 }
 
@@ -135,8 +135,8 @@ bool count_foreign(const Stencils& stencils, const HitPacket& samples,
 /// Section 3.1, case 2: |n_right - n_left|^2 + |n_up - n_down|^2 over the outer ring.
 void measure_normal_gradient(const Stencils& stencils, Workspace& work, Lanes<float>& squared) {
     const auto normals = [&](std::size_t k) {
-        // Shaded stencils face the viewer already.
-        if (!stencils.shaded) work.sampler.turn_to_viewer(k, work.stencil_hits[k]);
+        // Stencils that are shaded have their normals already.
+        if (!stencils.shaded) work.sampler.complete(k, work.stencil_hits[k]);
         NormalPacket packet;
         stencils.pipeline.shader.line_normals(work.stencil_hits[k], packet);
         return AxisNormals{packet.x, packet.y, packet.z};
@@ -154,11 +154,11 @@ void count_depth_jumps(const Stencils& stencils, const Workspace& work, std::siz
     Lanes<float> own;
     Lanes<float> other;
     Lanes<float> threshold;
-    camera.distances_from_eye(work.sample_rays[block], work.hits[block].t, own);
+    camera.distances_from_eye(work.sample_points[block], work.hits[block].t, own);
     for (int i = 0; i < kLanes; ++i) threshold[i] = share * own[i];
     d.fill(0);
     for (std::size_t k = 0; k < work.stencil_hits.size(); ++k) {
-        camera.distances_from_eye(work.sampler.packets()[k], work.stencil_hits[k].t, other);
+        camera.distances_from_eye(work.sampler.points()[k], work.stencil_hits[k].t, other);
         count_depth_jumps(own, other, threshold, d);
     }
 }
@@ -201,8 +201,12 @@ void trace_stencils(const Stencils& stencils, Workspace& work, Vec2f offset) {
     work.strengths.assign(work.blocks.size(), {});
     if (stencils.points.empty()) return;
     for (std::size_t k = 0; k < work.blocks.size(); ++k) {
-        work.sampler.trace_stencils(work.blocks[k], offset, stencils.points, stencils.shaded,
-                                    work.stencil_hits);
+        if (stencils.shaded) {
+            work.sampler.trace_stencils(work.blocks[k], offset, stencils.points, work.stencil_hits);
+        } else {
+            work.sampler.identify_stencils(work.blocks[k], offset, stencils.points,
+                                           work.stencil_hits);
+        }
         if (stencils.draw_lines) {
             measure_strength(stencils, work, k, work.strengths[k]);
         }
@@ -250,6 +254,10 @@ void write_aovs(const Stencils& stencils, const Workspace& work, Vec2f offset) {
 /// c_s is mixed with the line's colour by e_s; a pixel is the mean of its samples.
 void render_tile(const Stencils& stencils, Workspace& work, const Tile& tile) {
     sort_blocks(tile, stencils.pipeline.camera, stencils.reach, work.blocks, work.empty);
+    // Blocks at the film's edge are whole.
+    const float reach = stencils.reach + kBlockSide;
+    work.sampler.enter({static_cast<float>(tile.x0) - reach, static_cast<float>(tile.y0) - reach,
+                        static_cast<float>(tile.x1) + reach, static_cast<float>(tile.y1) + reach});
     for (const Block block : work.empty) {
         stencils.pipeline.film.put_background(block.x, block.y);
     }

@@ -9,34 +9,26 @@ namespace ink {
 
 namespace {
 
-INKTRACE_INLINE void make_block_rays(const Camera& camera, float spacing, Block block, Vec2f offset,
-                                     PointPacket& points, RayPacket& rays) {
+INKTRACE_INLINE void place_block(float spacing, Block block, Vec2f offset, PointPacket& points) {
     for (int i = 0; i < kLanes; ++i) {
         points.x[i] = (static_cast<float>(block.x + i % kBlockSide) + 0.5F) * spacing + offset.x;
         points.y[i] = (static_cast<float>(block.y + i / kBlockSide) + 0.5F) * spacing + offset.y;
-    }
-    camera.make_rays(points.x, points.y, rays);
-}
-
-INKTRACE_MULTIVERSION
-void make_rays(const Camera& camera, float spacing, std::span<const Block> blocks, Vec2f offset,
-               PointPacket* points, RayPacket* rays) {
-    for (std::size_t k = 0; k < blocks.size(); ++k) {
-        make_block_rays(camera, spacing, blocks[k], offset, points[k], rays[k]);
-        for (int i = 0; i < kLanes; ++i) {
-            const bool wanted =
-                i % kBlockSide < blocks[k].columns && i / kBlockSide < blocks[k].rows;
-            rays[k].active[i] = wanted ? -1 : 0;
-        }
+        const bool wanted = i % kBlockSide < block.columns && i / kBlockSide < block.rows;
+        points.active[i] = wanted ? -1 : 0;
     }
 }
 
 INKTRACE_MULTIVERSION
-void make_rays(const Camera& camera, float spacing, Block block, Vec2f offset,
-               std::span<const Vec2f> stencil, PointPacket* points, RayPacket* rays) {
-    for (std::size_t k = 0; k < stencil.size(); ++k) {
-        make_block_rays(camera, spacing, block, offset + stencil[k], points[k], rays[k]);
-        rays[k].active.fill(-1);
+void place_blocks(float spacing, std::span<const Block> blocks, Vec2f offset, PointPacket* points) {
+    for (const Block& block : blocks) place_block(spacing, block, offset, *points++);
+}
+
+INKTRACE_MULTIVERSION
+void make_rays(const Camera& camera, std::span<const PointPacket> points, RayPacket* rays) {
+    for (const PointPacket& packet : points) {
+        camera.make_rays(packet.x, packet.y, *rays);
+        for (int i = 0; i < kLanes; ++i) rays->active[i] = packet.active[i];
+        ++rays;
     }
 }
 
@@ -83,8 +75,8 @@ ScreenBox bounds(std::span<const Vec2f> points) {
     return box;
 }
 
-ScreenBox sum(const ScreenBox& a, const ScreenBox& b) {
-    return {a.left + b.left, a.top + b.top, a.right + b.right, a.bottom + b.bottom};
+ScreenBox shifted(const ScreenBox& box, Vec2f by) {
+    return {box.left + by.x, box.top + by.y, box.right + by.x, box.bottom + by.y};
 }
 
 }  // namespace
@@ -101,24 +93,49 @@ bool Sampler::entered(const ScreenBox& box) const {
 
 void Sampler::trace_blocks(std::span<const Block> blocks, Vec2f offset, std::span<HitPacket> hits) {
     points_.resize(blocks.size());
-    packets_.resize(blocks.size());
-    make_rays(camera_, spacing_, blocks, offset, points_.data(), packets_.data());
-    const ScreenBox shift{offset.x, offset.y, offset.x, offset.y};
-    trace(sum(bounds(blocks, spacing_), shift), true, hits);
+    place_blocks(spacing_, blocks, offset, points_.data());
+    const ScreenBox box = shifted(bounds(blocks, spacing_), offset);
+    if (!entered(box)) enter(box);
+    trace(hits);
+}
+
+void Sampler::place_stencils(Block block, Vec2f offset, std::span<const Vec2f> stencil) {
+    block.columns = kBlockSide;
+    block.rows = kBlockSide;
+    points_.resize(stencil.size());
+    for (std::size_t k = 0; k < stencil.size(); ++k) {
+        place_blocks(spacing_, {&block, 1}, offset + stencil[k], &points_[k]);
+    }
+    const ScreenBox own = shifted(bounds({&block, 1}, spacing_), offset);
+    const ScreenBox reach = bounds(stencil);
+    const ScreenBox box{own.left + reach.left, own.top + reach.top, own.right + reach.right,
+                        own.bottom + reach.bottom};
+    if (!entered(box)) enter(box);
 }
 
 void Sampler::trace_stencils(Block block, Vec2f offset, std::span<const Vec2f> stencil,
-                             bool with_normals, std::span<HitPacket> hits) {
-    points_.resize(stencil.size());
-    packets_.resize(stencil.size());
-    make_rays(camera_, spacing_, block, offset, stencil, points_.data(), packets_.data());
-    const ScreenBox shift{offset.x, offset.y, offset.x, offset.y};
-    trace(sum(sum(bounds(std::span(&block, 1), spacing_), shift), bounds(stencil)), with_normals,
-          hits);
+                             std::span<HitPacket> hits) {
+    place_stencils(block, offset, stencil);
+    trace(hits);
 }
 
-void Sampler::turn_to_viewer(std::size_t k, HitPacket& hits) const {
-    face_viewer(&packets_[k], {&hits, 1});
+void Sampler::identify_stencils(Block block, Vec2f offset, std::span<const Vec2f> stencil,
+                                std::span<HitPacket> hits) {
+    place_stencils(block, offset, stencil);
+    packets_.clear();
+    if (tracer_->needs_rays()) {
+        packets_.resize(points_.size());
+        make_rays(camera_, points_, packets_.data());
+    }
+    tracer_->identify(points_, packets_, hits.first(points_.size()));
+    count_rays();
+}
+
+void Sampler::complete(std::size_t k, HitPacket& hits) {
+    RayPacket rays;
+    make_rays(camera_, {&points_[k], 1}, &rays);
+    tracer_->intersect({&points_[k], 1}, {&rays, 1}, {&hits, 1});
+    face_viewer(&rays, {&hits, 1});
 }
 
 void Sampler::trace_points(std::span<const Vec2f> points, std::vector<HitPacket>& hits) {
@@ -126,7 +143,6 @@ void Sampler::trace_points(std::span<const Vec2f> points, std::vector<HitPacket>
     sort_by_place(points, box);
     const std::size_t count = (points.size() + kLanes - 1) / kLanes;
     points_.resize(count);
-    packets_.resize(count);
     hits.resize(count);
     for (std::size_t k = 0; k < count; ++k) {
         const std::size_t first = k * kLanes;
@@ -135,11 +151,11 @@ void Sampler::trace_points(std::span<const Vec2f> points, std::vector<HitPacket>
             const Vec2f point = points[order_[n]];
             points_[k].x[i] = point.x;
             points_[k].y[i] = point.y;
-            packets_[k].active[i] = first + static_cast<std::size_t>(i) < points.size() ? -1 : 0;
+            points_[k].active[i] = first + static_cast<std::size_t>(i) < points.size() ? -1 : 0;
         }
-        camera_.make_rays(points_[k].x, points_[k].y, packets_[k]);
     }
-    trace(box, true, hits);
+    if (!entered(box)) enter(box);
+    trace(hits);
 }
 
 /// Counting sort by squares of the screen, row by row; their side suits a packet of points along a
@@ -167,12 +183,17 @@ void Sampler::sort_by_place(std::span<const Vec2f> points, const ScreenBox& box)
     }
 }
 
-void Sampler::trace(const ScreenBox& box, bool with_normals, std::span<HitPacket> hits) {
-    const std::span<HitPacket> traced = hits.first(packets_.size());
-    if (!entered(box)) enter(box);
+void Sampler::trace(std::span<HitPacket> hits) {
+    packets_.resize(points_.size());
+    make_rays(camera_, points_, packets_.data());
+    const std::span<HitPacket> traced = hits.first(points_.size());
     tracer_->intersect(points_, packets_, traced);
-    if (with_normals) face_viewer(packets_.data(), traced);
-    for (const RayPacket& packet : packets_) {
+    face_viewer(packets_.data(), traced);
+    count_rays();
+}
+
+void Sampler::count_rays() {
+    for (const PointPacket& packet : points_) {
         for (int i = 0; i < kLanes; ++i) rays_ += packet.active[i] != 0 ? 1 : 0;
     }
 }

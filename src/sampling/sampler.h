@@ -37,14 +37,15 @@ class Sampler {
 
     /// The ray stencils of a block's samples at the lattice points plus `offset`: one packet for
     /// each of the stencil's points. The pixels of a block share the point, which keeps the rays of
-    /// a packet as coherent as those of the block itself. Normals likewise if `with_normals`, else
-    /// as the tracer gives them.
+    /// a packet as coherent as those of the block itself.
     void trace_stencils(Block block, Vec2f offset, std::span<const Vec2f> stencil,
-                        bool with_normals, std::span<HitPacket> hits);
+                        std::span<HitPacket> hits);
 
-    /// Makes the normals of the hits of packet k of the last call unit and face the ray's origin,
-    /// where that was not asked for.
-    void turn_to_viewer(std::size_t k, HitPacket& hits) const;
+    /// The same, of which t, object and primitive are found only; `complete` adds the rest to the
+    /// hits of packet k.
+    void identify_stencils(Block block, Vec2f offset, std::span<const Vec2f> stencil,
+                           std::span<HitPacket> hits);
+    void complete(std::size_t k, HitPacket& hits);
 
     /// Rays through any points of the screen (pixels), sixteen a packet; the last packet is filled
     /// up with inactive ones. Points that are close together travel together: lane n, counted over
@@ -52,13 +53,17 @@ class Sampler {
     void trace_points(std::span<const Vec2f> points, std::vector<HitPacket>& hits);
     std::span<const std::uint32_t> order() const { return order_; }
 
-    /// The rays of the last call, packet by packet.
+    /// The rays of the last call, packet by packet; not after `identify_stencils`.
     std::span<const RayPacket> packets() const { return packets_; }
+    /// The points of the last call, packet by packet.
+    std::span<const PointPacket> points() const { return points_; }
 
     std::size_t rays() const { return rays_; }  ///< traced so far
 
   private:
-    void trace(const ScreenBox& box, bool with_normals, std::span<HitPacket> hits);
+    void place_stencils(Block block, Vec2f offset, std::span<const Vec2f> stencil);
+    void trace(std::span<HitPacket> hits);
+    void count_rays();
     bool entered(const ScreenBox& box) const;
     void sort_by_place(std::span<const Vec2f> points, const ScreenBox& box);
 
