@@ -3,9 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <random>
 #include <string>
 
 #include "base/error.h"
+#include "scene/bonds.h"
 #include "scene/colormap.h"
 #include "scene/elements.h"
 #include "scene/selection.h"
@@ -151,6 +153,85 @@ TEST(Representation, TakesRadiiFromATableANumberOrAField) {
     EXPECT_FLOAT_EQ(radius({.radius = "bfactor"}), 50.0F);
     EXPECT_THROW(represent(m, {.radius = "-1"}), UsageError);
     EXPECT_THROW(represent(m, {.radius = "speed"}), Error);
+}
+
+/// Carbons at random places of a box, about one bond apart.
+Molecule carbon_gas(std::size_t count, double side) {
+    std::mt19937 random(7);
+    Molecule m;
+    for (std::size_t i = 0; i < count; ++i) {
+        const auto place = [&] { return static_cast<double>(random()) * 0x1p-32 * side; };
+        const double x = place();
+        const double y = place();
+        m.positions.push_back({x + 1e6, y - 1e6, place()});
+        m.elements.push_back(6);
+    }
+    return m;
+}
+
+TEST(Bonds, AreThoseThatEveryPairOfAtomsWouldGive) {
+    const Molecule m = carbon_gas(2000, 20.0);
+    std::vector<Bond> expected;
+    for (std::uint32_t a = 0; a < m.atom_count(); ++a) {
+        for (std::uint32_t b = a + 1; b < m.atom_count(); ++b) {
+            const double distance = length(m.positions[a] - m.positions[b]);
+            if (distance > 0.4 && distance < 2 * static_cast<double>(0.76F) + 0.45) {
+                expected.push_back({a, b});
+            }
+        }
+    }
+    EXPECT_GT(expected.size(), 1000U);
+    EXPECT_EQ(bonds_by_distance(m), expected);
+}
+
+TEST(Bonds, LinkNeitherHydrogensNorAtomsInOnePlace) {
+    Molecule m;
+    m.positions = {{0, 0, 0}, {0.7, 0, 0}, {0, 0.96, 0}, {0, 0.96, 0}};
+    m.elements = {1, 1, 8, 8};
+    EXPECT_EQ(bonds_by_distance(m), (std::vector<Bond>{{0, 2}, {0, 3}, {1, 2}, {1, 3}}));
+}
+
+TEST(Bonds, TakeNoTimeWithoutEndWhereAllAtomsCrowdTogether) {
+    Molecule m = carbon_gas(20'000, 1e-3);
+    EXPECT_TRUE(bonds_by_distance(m).empty());
+}
+
+TEST(Representation, DrawsBallsAndSticks) {
+    Molecule m;
+    m.positions = {{0, 0, 0}, {1.2, 0, 0}, {1.9, 1.1, 0}};
+    m.elements = {6, 6, 8};
+    const auto objects = represent(m, {.representation = Representation::ball_and_stick});
+    ASSERT_EQ(objects.size(), 2U);
+    EXPECT_FLOAT_EQ(spheres(objects).spheres[0].radius, 1.70F / 4);
+    const auto& sticks = std::get<Glyphs>(objects[1].shape);
+    ASSERT_EQ(sticks.placements.size(), 2U);
+    EXPECT_TRUE(objects[1].continues_previous);
+    EXPECT_EQ(sticks.colors[0], element(6).color);
+    const Bounds3f box = glyph_bounds(sticks.shape, sticks.placements[0]);
+    EXPECT_NEAR(box.extent().x, 1.2F, 1e-5F);
+    EXPECT_NEAR(box.extent().y, 2 * 0.14F, 1e-5F);
+}
+
+TEST(Representation, CutsSticksAloneInTheMiddleWhereColoursChange) {
+    Molecule m;
+    m.positions = {{0, 0, 0}, {1.2, 0, 0}, {1.2, 1.1, 0}};
+    m.elements = {6, 6, 8};
+    m.has_bond_table = true;
+    m.bonds = {{1, 2}};
+    const auto objects =
+        represent(m, {.representation = Representation::sticks, .stick_radius = 0.3});
+    const auto& sticks = std::get<Glyphs>(objects.at(1).shape);
+    EXPECT_EQ(sticks.colors, (std::vector<Rgb8>{element(6).color, element(8).color}));
+    EXPECT_FLOAT_EQ(spheres(objects).spheres[2].radius, 0.3F);
+    EXPECT_NEAR(glyph_bounds(sticks.shape, sticks.placements[0]).upper.y, 0.55F, 1e-5F);
+    EXPECT_EQ(objects[0].usual_ids, IdLevel::object);
+}
+
+TEST(Representation, DrawsNoSticksWithoutBonds) {
+    Molecule m;
+    m.positions = {{0, 0, 0}, {9, 0, 0}};
+    m.elements = {18, 18};
+    EXPECT_EQ(represent(m, {.representation = Representation::sticks}).size(), 1U);
 }
 
 TEST(ColorMaps, StartAndEndWhereTheirAuthorsSay) {

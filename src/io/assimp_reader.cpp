@@ -125,6 +125,14 @@ class SceneWalk {
           normals_(all_meshes(scene, [](const aiMesh* m) { return m->HasNormals(); })),
           colors_(all_meshes(scene, [](const aiMesh* m) { return m->HasVertexColors(0); })) {
         polygons_.single_precision = true;
+        // Several materials become colours of the vertices.
+        std::optional<Rgb8> first;
+        for (const aiMesh* const mesh : meshes_of(scene)) {
+            const std::optional<Rgb8> color = material_color(scene, *mesh);
+            if (mesh == scene.mMeshes[0]) first = color;
+            several_ = several_ || color != first;
+        }
+        several_ = several_ && !colors_;
     }
 
     /// Nothing when a coordinate is not usable, or there are more vertices than may be.
@@ -174,6 +182,7 @@ class SceneWalk {
     /// False when a coordinate is not usable.
     bool add_vertices(const aiMesh& mesh, const aiMatrix4x4& place) {
         const bool moved = !place.IsIdentity();
+        const std::optional<Rgb8> plain = material_color(scene_, mesh);
         aiMatrix3x3 turn(place);
         if (moved && normals_) turn.Inverse().Transpose();
         for (unsigned i = 0; i < mesh.mNumVertices; ++i) {
@@ -183,6 +192,7 @@ class SceneWalk {
                 polygons_.normals.push_back(
                     to_vec(moved ? turn * mesh.mNormals[i] : mesh.mNormals[i]));
             }
+            if (several_) polygons_.colors.push_back(plain.value_or(Material{}.color));
             if (!colors_) continue;
             const aiColor4D& color = mesh.mColors[0][i];
             polygons_.colors.push_back(to_rgb8(color.r, color.g, color.b));
@@ -211,6 +221,7 @@ class SceneWalk {
     std::size_t most_vertices_;
     bool normals_;  ///< of all meshes
     bool colors_;
+    bool several_ = false;  ///< meshes have materials of several colours
     PolygonMesh polygons_;
 };
 

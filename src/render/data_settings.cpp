@@ -21,9 +21,10 @@ struct Word {
     T value;
 };
 
-constexpr std::array<Word<Representation>, 1> kRepresentations{{
-    {"spheres", Representation::spheres},
-}};
+constexpr std::array<Word<Representation>, 3> kRepresentations{
+    {{"spheres", Representation::spheres},
+     {"ball-and-stick", Representation::ball_and_stick},
+     {"sticks", Representation::sticks}}};
 constexpr std::array<Word<RadiiTable>, 3> kRadii{
     {{"vdw", RadiiTable::vdw}, {"bondi", RadiiTable::bondi}, {"covalent", RadiiTable::covalent}}};
 
@@ -104,6 +105,14 @@ std::string print_clip(const ClipBox& box) {
     return text;
 }
 
+std::optional<double> read_stick_radius(std::string_view text) {
+    if (text.empty()) return std::nullopt;
+    const auto radius = parse_double(text);
+    constexpr double kLargest = 1e15;
+    if (radius && *radius > 0.0 && *radius <= kLargest) return radius;
+    throw UsageError(fmt::format("'{}' is not a positive number", text));
+}
+
 const ColorMap* read_color_map(std::string_view text) {
     if (const ColorMap* const map = find_color_map(text)) return map;
     std::vector<std::string_view> known;
@@ -139,7 +148,10 @@ std::vector<Setting> data_settings_rows() {
          "Draw only what has its centre in a box in the units of the file, as x=0:2,z=:5",
          [](S& s, Text t) { s.data.clip = read_clip(t); },
          [](const S& s) { return print_clip(s.data.clip); }},
-        {"represent", "Input", "HOW", "How molecules are drawn: spheres",
+        {"represent", "Input", "HOW",
+         "How molecules are drawn: spheres, ball-and-stick or sticks; bonds are the file's, else "
+         "found "
+         "by distance",
          [](S& s, Text t) { s.data.representation = read_word(kRepresentations, t); },
          [](const S& s) { return print_word(kRepresentations, s.data.representation); }},
         {"radii", "Input", "TABLE",
@@ -154,6 +166,11 @@ std::vector<Setting> data_settings_rows() {
              s.data.radius = t;
          },
          [](const S& s) { return s.data.radius; }},
+        {"stick-radius", "Input", "R", "Radius of bonds; by default 0.14 with balls, 0.2 alone",
+         [](S& s, Text t) { s.data.stick_radius = read_stick_radius(t); },
+         [](const S& s) {
+             return s.data.stick_radius ? fmt::format("{}", *s.data.stick_radius) : std::string();
+         }},
         {"color-by", "Input", "WHAT",
          "element, chain, chain-hetero (carbons by chain, others by element), residue, entity, "
          "rainbow (along each chain), none, a colour, or a field such as bfactor or velocity.x",

@@ -40,8 +40,9 @@ void resolve_one_object(const HitPacket& hits, GeometryId first, std::uint32_t s
 LineIds::LineIds(const Scene& scene, std::optional<IdLevel> level) {
     GeometryId next = kBackground + 1;
     for (const Object& object : scene.objects()) {
-        const IdLevel usual =
+        const IdLevel by_kind =
             object.kind == ObjectKind::mesh ? IdLevel::object : IdLevel::primitive;
+        const IdLevel usual = object.usual_ids.value_or(by_kind);
         add(object, object.ids.value_or(level.value_or(usual)), next);
     }
 }
@@ -54,9 +55,14 @@ LineIds LineIds::at_level(const Scene& scene, IdLevel level) {
 }
 
 void LineIds::add(const Object& object, IdLevel level, GeometryId& next) {
+    const bool continues = object.continues_previous && !objects_.empty();
     if (const Groups* own_groups = groups(object, level)) {
-        objects_.push_back({next, 0, own_groups});
-        next += *std::ranges::max_element(*own_groups) + 1;
+        const bool shared = continues && objects_.back().groups != nullptr;
+        const GeometryId first = shared ? objects_.back().first : next;
+        objects_.push_back({first, 0, own_groups});
+        next = std::max(next, first + *std::ranges::max_element(*own_groups) + 1);
+    } else if (continues && level != IdLevel::primitive && objects_.back().stride == 0) {
+        objects_.push_back({objects_.back().first, 0, nullptr});
     } else if (level == IdLevel::primitive) {
         const bool ball = std::holds_alternative<Spheres>(object.shape);
         objects_.push_back({next, 1, nullptr, ball});

@@ -52,6 +52,7 @@ struct DataSettings {
 
     Representation representation = Representation::spheres;
     RadiiTable radii = RadiiTable::vdw;
+    std::optional<double> stick_radius = {};  ///< of bonds; default: by the representation
     std::string radius = {};  ///< a number for all, or a field; empty: the file's, else chosen
     Glyph glyph = Glyph::sphere;
     std::string glyph_field = {};  ///< the tensor or orientation of glyphs; empty: by its name

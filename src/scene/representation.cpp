@@ -13,6 +13,7 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "base/text.h"
+#include "scene/bonds.h"
 #include "scene/elements.h"
 
 namespace ink {
@@ -36,6 +37,18 @@ std::vector<float> atom_field(const Molecule& molecule, const std::string& name)
 
 // ---- Radii ----
 
+/// Of balls in ball-and-stick models, as ChimeraX draws them.
+constexpr float kBallScale = 0.25F;
+constexpr double kStickWithBalls = 0.14;
+constexpr double kStickAlone = 0.2;
+/// Of sticks between atoms of two colours, where lines would part two halves.
+constexpr Rgb8 kStickColor{168, 168, 168};
+
+double stick_radius(const DataSettings& settings) {
+    const bool alone = settings.representation == Representation::sticks;
+    return settings.stick_radius.value_or(alone ? kStickAlone : kStickWithBalls);
+}
+
 std::vector<float> atom_radii(const Molecule& molecule, const DataSettings& settings) {
     const std::size_t count = molecule.atom_count();
     if (const auto uniform = uniform_radius(settings.radius)) {
@@ -51,10 +64,18 @@ std::vector<float> atom_radii(const Molecule& molecule, const DataSettings& sett
         }
         return radii;
     }
-    if (!molecule.radii.empty()) return molecule.radii;
-    std::vector<float> radii(count);
-    for (std::size_t i = 0; i < count; ++i) {
-        radii[i] = atom_radius(settings.radii, molecule.elements[i]);
+    if (settings.representation == Representation::sticks) {
+        return std::vector<float>(count, static_cast<float>(stick_radius(settings)));
+    }
+    std::vector<float> radii = molecule.radii;
+    if (radii.empty()) {
+        radii.resize(count);
+        for (std::size_t i = 0; i < count; ++i) {
+            radii[i] = atom_radius(settings.radii, molecule.elements[i]);
+        }
+    }
+    if (settings.representation == Representation::ball_and_stick) {
+        for (float& radius : radii) radius *= kBallScale;
     }
     return radii;
 }
@@ -196,6 +217,76 @@ Parts atom_parts(const Molecule& molecule, const DataSettings& settings) {
         fmt::format("--ids: part:{}: expected part:chain, residue, entity or element", level));
 }
 
+// ---- Bonds ----
+
+/// A stick a bond, in the colour and part of its ends. Where these differ, sticks alone are two
+/// halves.
+class StickBuilder {
+  public:
+    StickBuilder(const Spheres& atoms, double radius, bool in_halves)
+        : atoms_(atoms), radius_(radius), in_halves_(in_halves) {
+        sticks_.shape = {.kind = GlyphKind::frustum, .capped = false};
+    }
+
+    void add(const Bond& bond) {
+        const Vec3d from = to_double(atoms_.spheres[bond.a].centre);
+        const Vec3d to = to_double(atoms_.spheres[bond.b].centre);
+        if (from == to) return;
+        if (!in_halves_ || (color(bond.a) == color(bond.b) && part(bond.a) == part(bond.b))) {
+            const bool same = color(bond.a) == color(bond.b);
+            add(from, to, same ? color(bond.a) : kStickColor, part(bond.a));
+            return;
+        }
+        const Vec3d middle = (from + to) * 0.5;
+        add(from, middle, color(bond.a), part(bond.a));
+        add(middle, to, color(bond.b), part(bond.b));
+    }
+    Glyphs take() { return std::move(sticks_); }
+
+  private:
+    Rgb8 color(std::uint32_t atom) const {
+        return atoms_.colors.empty() ? kStickColor : atoms_.colors[atom];
+    }
+    std::uint32_t part(std::uint32_t atom) const {
+        return atoms_.parts.empty() ? 0 : atoms_.parts[atom];
+    }
+    void add(Vec3d from, Vec3d to, Rgb8 color, std::uint32_t part) {
+        sticks_.placements.push_back(placement_between(from, to, radius_));
+        sticks_.colors.push_back(color);
+        if (!atoms_.parts.empty()) sticks_.parts.push_back(part);
+    }
+
+    const Spheres& atoms_;
+    double radius_;
+    bool in_halves_;
+    Glyphs sticks_;
+};
+
+/// The bonds of the molecule as an object that belongs to that of its atoms; nothing where there
+/// are none.
+std::optional<Object> make_sticks(const Molecule& molecule, const Object& atoms,
+                                  const DataSettings& settings) {
+    const auto& spheres = std::get<Spheres>(atoms.shape);
+    StickBuilder builder(spheres, stick_radius(settings),
+                         settings.representation == Representation::sticks);
+    for (const Bond& bond :
+         molecule.has_bond_table ? molecule.bonds : bonds_by_distance(molecule)) {
+        builder.add(bond);
+    }
+    Glyphs sticks = builder.take();
+    if (sticks.placements.empty()) return std::nullopt;
+    Object object;
+    object.name = atoms.name + " bonds";
+    object.kind = atoms.kind;
+    object.frame = atoms.frame;
+    object.shape = std::move(sticks);
+    object.material = atoms.material;
+    object.part_names = atoms.part_names;
+    object.usual_ids = atoms.usual_ids;
+    object.continues_previous = true;
+    return object;
+}
+
 }  // namespace
 
 std::optional<double> uniform_radius(const std::string& text) {
@@ -258,7 +349,13 @@ std::vector<Object> represent(const Molecule& molecule, const DataSettings& sett
     object.part_names = std::move(parts.names);
     object.shape = std::move(shape);
     std::vector<Object> objects;
+    if (settings.representation == Representation::sticks) object.usual_ids = IdLevel::object;
     objects.push_back(std::move(object));
+    if (settings.representation != Representation::spheres) {
+        if (auto sticks = make_sticks(molecule, objects[0], settings)) {
+            objects.push_back(std::move(*sticks));
+        }
+    }
     return objects;
 }
 

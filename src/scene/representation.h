@@ -9,7 +9,8 @@
 
 namespace ink {
 
-/// The molecule as objects to draw. `select`, `assembly` and `clip` have been applied already.
+/// The molecule as objects to draw: spheres, sticks, or both. `select`, `assembly` and `clip` have
+/// been applied already.
 /// Parts are chains unless `parts` says otherwise; colours are the elements' unless `color_by`
 /// does. Throws Error where the settings name what the molecule does not have.
 std::vector<Object> represent(const Molecule& molecule, const DataSettings& settings);

@@ -44,6 +44,11 @@ struct Object {
     std::vector<std::string> part_names{};
     /// What lines tell apart and find creases by; default: as for the picture.
     std::optional<IdLevel> ids{};
+    /// What lines tell apart where neither this object nor the picture says; default: by its kind.
+    std::optional<IdLevel> usual_ids{};
+    /// Is of one thing with the object before it, as sticks are with the balls of a molecule: parts
+    /// of one number and the whole of both share their IDs.
+    bool continues_previous = false;
     std::optional<NormalSource> normals{};
 
     std::size_t primitive_count() const { return ink::primitive_count(shape); }
