@@ -711,7 +711,7 @@ TEST(MeshLines, TakeNoRays) {
     RenderStats without;
     RenderStats with;
     render(scene, *tracer, settings, {}, {}, &without);
-    set(settings, "lines", "all");
+    set(settings, "lines", "silhouette,intersection,self-occlusion,crease,boundary,mesh");
     render(scene, *tracer, settings, {}, {}, &with);
     EXPECT_EQ(with.rays, without.rays);
     EXPECT_GT(with.crossings, without.crossings + 20);

@@ -153,28 +153,30 @@ struct Gauge {
     Vec3d gradient;
 };
 
-/// d/du of the p-norm of (u, v) and its value.
-double norm_of_two(double u, double v, double p, double& du, double& dv) {
-    const double most = std::max(u, v);
-    if (most == 0.0) {
-        du = dv = 0.0;
-        return 0.0;
+/// The p-norm of two numbers that are not negative, and its derivatives.
+struct NormOfTwo {
+    double value = 0.0, du = 0.0, dv = 0.0;
+
+    NormOfTwo(double u, double v, double p) {
+        const double most = std::max(u, v);
+        if (most == 0.0) return;
+        const double ratio = std::min(u, v) / most;
+        const double power = std::pow(ratio, p);
+        const double root = std::pow(1.0 + power, 1.0 / p);
+        value = most * root;
+        const double d_most = root / (1.0 + power);
+        const double d_least = ratio > 0.0 ? d_most * power / ratio : p == 1.0 ? 1.0 : 0.0;
+        du = u >= v ? d_most : d_least;
+        dv = u >= v ? d_least : d_most;
     }
-    const double norm = most * std::pow(std::pow(u / most, p) + std::pow(v / most, p), 1.0 / p);
-    du = std::pow(u / norm, p - 1.0);
-    dv = std::pow(v / norm, p - 1.0);
-    return norm;
-}
+};
 
 Gauge superellipsoid_gauge(const UnitShape& shape, Vec3d p) {
-    double dx = 0.0;
-    double dy = 0.0;
-    double dm = 0.0;
-    double dz = 0.0;
-    const double m = norm_of_two(std::abs(p.x), std::abs(p.y), 2.0 / shape.b, dx, dy);
-    const double value = norm_of_two(m, std::abs(p.z), 2.0 / shape.a, dm, dz);
-    return {value,
-            {std::copysign(dm * dx, p.x), std::copysign(dm * dy, p.y), std::copysign(dz, p.z)}};
+    const NormOfTwo xy(std::abs(p.x), std::abs(p.y), 2.0 / shape.b);
+    const NormOfTwo all(xy.value, std::abs(p.z), 2.0 / shape.a);
+    return {all.value,
+            {std::copysign(all.du * xy.du, p.x), std::copysign(all.du * xy.dv, p.y),
+             std::copysign(all.dv, p.z)}};
 }
 
 /// A norm is convex along the ray: from outside, Newton's steps come to the crossing without ever

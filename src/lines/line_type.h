@@ -11,10 +11,11 @@ enum class LineType : std::uint8_t {
     self_occlusion,  ///< one geometry, its depth jumps
     crease,          ///< one geometry, its normal jumps
     boundary,        ///< a surface ends at an open edge, in front of whatever is behind
-    mesh             ///< one geometry, the face of the mesh changes
+    mesh,            ///< one geometry, the face of the mesh changes
+    ridge            ///< view-dependent curvature is maximal: an apparent ridge
 };
 
-inline constexpr int kLineTypes = 6;
+inline constexpr int kLineTypes = 7;
 
 /// A set of line types.
 class LineTypes {
@@ -27,7 +28,7 @@ class LineTypes {
     /// All but those that are drawn only on request.
     static constexpr LineTypes usual() {
         LineTypes types = all();
-        types.bits_ &= ~(1U << index(LineType::mesh));
+        types.bits_ &= ~(1U << index(LineType::mesh) | 1U << index(LineType::ridge));
         return types;
     }
     constexpr bool has(LineType type) const { return (bits_ >> index(type) & 1U) != 0; }

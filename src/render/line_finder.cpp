@@ -207,6 +207,17 @@ std::vector<ColoredSegment> LineFinder::find_lines() {
     return found;
 }
 
+/// The colours of a ridge's two sides are alike: smoothing has nothing to do there.
+void LineFinder::add_ridges(const Tile& tile, std::vector<ColoredSegment>& found) {
+    const Timer timer(stats_.lines_ms);
+    segments_.clear();
+    ridges_->search(tile, segments_);
+    for (const Segment& segment : segments_) {
+        found.push_back({segment, {}, {}});
+        density_.add(segment, edges_.ink.styles[edges_.style_of(segment)].width_px);
+    }
+}
+
 /// Whether the scene rules out a line that the samples alone let suspect.
 bool LineFinder::is_smooth(const SuspectEdge& edge) const {
     if (edge.suspicion == Suspicion::id || edge.suspicion == Suspicion::face) return false;

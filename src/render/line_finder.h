@@ -11,6 +11,7 @@
 #include "lines/locate.h"
 #include "lines/segment.h"
 #include "render/edges_method.h"
+#include "render/ridge_search.h"
 #include "render/tiles.h"
 #include "sampling/sampler.h"
 #include "sampling/samples.h"
@@ -31,13 +32,19 @@ class LineFinder {
               sample(points, out);
           }),
           describe_([this](std::size_t point, Sample& sample) { describe(point, sample); }),
-          density_(edges.no_lines) {}
+          density_(edges.no_lines) {
+        if (edges.draw_lines && edges.wanted.has(LineType::ridge)) {
+            ridges_.emplace(edges.pipeline, edges.q);
+        }
+    }
 
     /// Design: trace the lattice, detect, locate, connect. Shades the tile's pixels on the way.
     std::vector<ColoredSegment> search(const Tile& tile) {
         trace_lattice(tile);
         shade(tile);
-        return find_lines();
+        std::vector<ColoredSegment> found = find_lines();
+        if (ridges_) add_ridges(tile, found);
+        return found;
     }
 
     /// Of the lines found so far that are to be drawn.
@@ -45,7 +52,7 @@ class LineFinder {
 
     RenderStats stats() const {
         RenderStats result = stats_;
-        result.rays = sampler_.rays();
+        result.rays = sampler_.rays() + (ridges_ ? ridges_->rays() : 0);
         return result;
     }
 
@@ -56,6 +63,7 @@ class LineFinder {
     void put_pixels(int x, int y);
     void put_aovs(Block block);
     std::vector<ColoredSegment> find_lines();
+    void add_ridges(const Tile& tile, std::vector<ColoredSegment>& found);
     void sample(std::span<const Vec2f> points, std::span<Sample> out);
     struct LatticeHit {
         const HitPacket* hits;
@@ -78,6 +86,7 @@ class LineFinder {
     Locator locator_;
     SampleFunction sample_;
     SurfaceFunction describe_;
+    std::optional<RidgeSearch> ridges_;
     Connector connector_;
     SampleGrid grid_;
     int blocks_across_ = 0;

@@ -15,7 +15,7 @@ namespace ink {
 namespace {
 
 constexpr std::array<std::string_view, kLineTypes> kNames{
-    "silhouette", "intersection", "self-occlusion", "crease", "boundary", "mesh"};
+    "silhouette", "intersection", "self-occlusion", "crease", "boundary", "mesh", "ridge"};
 
 constexpr int kMostObjects = 1 << 24;
 

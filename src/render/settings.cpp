@@ -300,8 +300,9 @@ std::vector<Setting> make_table() {
          [](S& s, Text t) { s.method = kMethods.read(t); },
          [](const S& s) { return kMethods.print(s.method); }},
         {"lines", "Lines", "LIST",
-         "silhouette, intersection, self-occlusion, crease, boundary, mesh, all or none; method "
-         "stencil draws the first two, both for either",
+         "silhouette, intersection, self-occlusion, crease, boundary, mesh, ridge (apparent "
+         "ridges), "
+         "all or none; method stencil draws the first two, both for either",
          [](S& s, Text t) {
              LineTypes types;
              for (const LineType type : kLineTypeWords.read_list(t)) types.add(type);
@@ -350,6 +351,16 @@ std::vector<Setting> make_table() {
          "(as shaded: a file's smooth normals hide creases) or geometric (every edge of a facet)",
          [](S& s, Text t) { s.shading.normals = kNormalSources.read(t); },
          [](const S& s) { return kNormalSources.print(s.shading.normals); }},
+        {"ridge-scale", "Lines", "LEN",
+         "Apparent ridges: radius on the picture of what the turning of normals is taken from; "
+         "larger is smoother",
+         [](S& s, Text t) { s.ridge_scale = read_length(t); },
+         [](const S& s) { return print(s.ridge_scale); }},
+        {"ridge-turn", "Lines", "DEG",
+         "Apparent ridges: where the normal turns by this in 1 % of the picture's height, they "
+         "begin; they are full where it turns by twice as much",
+         [](S& s, Text t) { s.ridge_turn_deg = read_number(t, 1e-3, 1e3); },
+         [](const S& s) { return fmt::format("{}", s.ridge_turn_deg); }},
         {"crease-gradient", "Lines", "G",
          "Method stencil: a crease is where the normal changes by more than this a pixel",
          [](S& s, Text t) {

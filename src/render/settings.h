@@ -64,6 +64,8 @@ struct Settings {
     std::optional<IdLevel> ids;
     std::optional<Metric> metric;  ///< default: solid for method "edges", linear for "stencil"
     int rings = 1;
+    Length ridge_scale{0.8, Length::Unit::percent};  ///< radius that ridges are looked for in
+    double ridge_turn_deg = 3.0;   ///< that a normal turns in 1 % of the height, least
     StencilThresholds thresholds;  ///< of method "stencil"
 
     Compose compose = Compose::both;
@@ -76,6 +78,7 @@ struct Settings {
     int tile = 64;
 
     double line_width_px() const { return line_width.pixels(dpi, size.height); }
+    double ridge_scale_px() const { return ridge_scale.pixels(dpi, size.height); }
     bool draws_lines() const { return compose != Compose::shaded && !lines.empty(); }
     /// The metric that is set, or else the method's own.
     Metric profile() const;

@@ -1,10 +1,15 @@
+#include <algorithm>
+#include <array>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "base/parallel.h"
+#include "lines/ridges.h"
 #include "lines/stencil_features.h"
 #include "lines/strength.h"
 #include "render/pipeline.h"
+#include "render/ridge_search.h"
 #include "render/tiles.h"
 #include "sampling/sampler.h"
 #include "sampling/stencil.h"
@@ -22,7 +27,9 @@ struct Stencils {
                    shared.settings.lines.has(LineType::intersection)),
           creases(shared.settings.lines.has(LineType::crease)),
           occlusions(shared.settings.lines.has(LineType::self_occlusion)),
-          draw_lines(shared.settings.draws_lines() && (outlines || creases || occlusions)),
+          ridges(shared.settings.lines.has(LineType::ridge)),
+          draw_lines(shared.settings.draws_lines() &&
+                     (outlines || creases || occlusions || ridges)),
           shaded(shared.settings.smoothing().kind == AntiAliasing::Kind::stencil) {
         const Settings& settings = shared.settings;
         if (!draw_lines && !shaded) return;
@@ -31,7 +38,17 @@ struct Stencils {
         axes = stencil_axes(settings.rings);
         const float crease = settings.thresholds.crease_gradient * 2.0F * radius;
         crease_squared = crease * crease;
+        half_width = radius;
         reach = radius + 1.0F;
+        if (draw_lines && ridges) {
+            // The sample itself stands first: it is the centre of the fit.
+            constexpr int kRidgeRings = 2;
+            ridge_reach = static_cast<float>(settings.ridge_scale_px()) + 1.0F;
+            ridge_points = ring_stencil(ridge_reach - 1.0F, kRidgeRings);
+            std::vector<Vec2f> all{{0.0F, 0.0F}};
+            all.insert(all.end(), ridge_points.begin(), ridge_points.end());
+            ridge_estimator.emplace(all, ridge_settings(settings));
+        }
         const int M = static_cast<int>(points.size());
         const Metric metric = settings.profile();
         for (int m = 0; m <= M; ++m) strengths.push_back(edge_strength(metric, m, M));
@@ -41,13 +58,17 @@ struct Stencils {
     bool plain() const { return samples.size() == 1 && !draw_lines; }
 
     const Pipeline& pipeline;
-    std::vector<Vec2f> samples;    ///< a pixel's sample rays, offsets from its centre
-    std::vector<Vec2f> points;     ///< of a stencil, offsets from the sample; empty: not needed
-    std::vector<float> strengths;  ///< e_M(m) for m = 0..M
-    StencilAxes axes{};            ///< among `points`
-    float crease_squared = 0.0F;   ///< least square of the normal's difference across a stencil
-    float reach = 1.0F;            ///< of a pixel's samples and their stencils, pixels
-    bool outlines, creases, occlusions;  ///< which lines are wanted
+    std::vector<Vec2f> samples;       ///< a pixel's sample rays, offsets from its centre
+    std::vector<Vec2f> points;        ///< of a stencil, offsets from the sample; empty: not needed
+    std::vector<float> strengths;     ///< e_M(m) for m = 0..M
+    StencilAxes axes{};               ///< among `points`
+    float crease_squared = 0.0F;      ///< least square of the normal's difference across a stencil
+    float half_width = 0.0F;          ///< of a line, pixels
+    float ridge_reach = 0.0F;         ///< of the stencil that ridges are found by, pixels
+    std::vector<Vec2f> ridge_points;  ///< of the stencil that ridges are found by
+    std::optional<RidgeEstimator> ridge_estimator;
+    float reach = 1.0F;  ///< of a pixel's samples and their stencils, pixels
+    bool outlines, creases, occlusions, ridges;  ///< which lines are wanted
     bool draw_lines;
     bool shaded;  ///< stencil anti-aliasing
 };
@@ -56,17 +77,21 @@ struct Stencils {
 struct Workspace {
     explicit Workspace(const Stencils& stencils)
         : sampler(*stencils.pipeline.frame, stencils.pipeline.camera),
-          stencil_hits(stencils.points.size()) {}
+          stencil_hits(stencils.points.size()),
+          ridge_hits(stencils.ridge_points.size()) {}
 
     Sampler sampler;
     std::vector<Block> blocks, empty;
     std::vector<HitPacket> hits;             ///< of the sample rays
-    std::vector<PointPacket> sample_points;  ///< if self-occlusions are looked for
+    std::vector<PointPacket> sample_points;  ///< if self-occlusions or ridges are looked for
     std::vector<ColorPacket> colors;         ///< c_s
     std::vector<std::uint8_t> seen;          ///< 0: nothing but background
     std::vector<Lanes<float>> strengths;     ///< e_s
     std::vector<PixelSums> sums;
     std::vector<HitPacket> stencil_hits;  ///< of the block at hand, one entry a stencil point
+    std::vector<HitPacket> ridge_hits;    ///< likewise, of the ridge stencil
+    std::vector<std::array<Sample, kLanes>> ridge_samples;  ///< of the sample, then its stencil
+    std::vector<Vec3f> ridge_normals;
     RenderStats stats;
 };
 
@@ -74,7 +99,7 @@ void trace_samples(const Stencils& stencils, Workspace& work, Vec2f offset) {
     const Timer timer(work.stats.trace_ms);
     work.hits.resize(work.blocks.size());
     work.sampler.trace_blocks(work.blocks, offset, work.hits);
-    if (stencils.draw_lines && stencils.occlusions) {
+    if (stencils.draw_lines && (stencils.occlusions || stencils.ridges)) {
         const auto points = work.sampler.points();
         work.sample_points.assign(points.begin(), points.end());
     }
@@ -185,6 +210,62 @@ void measure_strength(const Stencils& stencils, Workspace& work, std::size_t blo
     }
 }
 
+/// What a packet saw, lane by lane.
+std::array<Sample, kLanes> samples_of(const Stencils& stencils, const RayPacket& rays,
+                                      const HitPacket& hits) {
+    std::array<Sample, kLanes> samples;
+    NormalPacket normals;
+    Lanes<GeometryId> ids;
+    stencils.pipeline.shader.smooth(hits, normals);
+    stencils.pipeline.ids.resolve(hits, ids);
+    for (int i = 0; i < kLanes; ++i) {
+        const float t = hits.t[i];
+        Sample& sample = samples[static_cast<std::size_t>(i)];
+        sample.id = ids[i];
+        sample.position = {rays.origin_x[i] + t * rays.dir_x[i],
+                           rays.origin_y[i] + t * rays.dir_y[i],
+                           rays.origin_z[i] + t * rays.dir_z[i]};
+        sample.normal = {normals.x[i], normals.y[i], normals.z[i]};
+    }
+    return samples;
+}
+
+/// Section 5.4: the strength of an apparent ridge at every sample of a block, by its distance from
+/// the sample. A line at distance u h is as strong as a straight edge there (figure 4(c)).
+void measure_ridges(const Stencils& stencils, Workspace& work, std::size_t block, Vec2f offset,
+                    Lanes<float>& strength) {
+    const auto& objects = work.hits[block].object;
+    if (std::ranges::all_of(objects, [](auto object) { return object == kNoObject; })) return;
+    work.sampler.trace_stencils(work.blocks[block], offset, stencils.ridge_points, work.ridge_hits);
+    auto& samples = work.ridge_samples;
+    samples.clear();
+    RayPacket own;
+    stencils.pipeline.camera.make_rays(work.sample_points[block].x, work.sample_points[block].y,
+                                       own);
+    samples.push_back(samples_of(stencils, own, work.hits[block]));
+    for (std::size_t k = 0; k < work.ridge_hits.size(); ++k) {
+        samples.push_back(samples_of(stencils, work.sampler.packets()[k], work.ridge_hits[k]));
+    }
+    work.ridge_normals.resize(samples.size());
+    for (std::size_t i = 0; i < kLanes; ++i) {
+        const Sample& centre = samples[0][i];
+        const bool smooth = std::all_of(samples.begin() + 1, samples.end(), [&](const auto& other) {
+            return one_surface(centre, other[i]);
+        });
+        if (!smooth) continue;
+        for (std::size_t k = 0; k < samples.size(); ++k) {
+            work.ridge_normals[k] = samples[k][i].normal;
+        }
+        const RidgeEstimate ridge = stencils.ridge_estimator->estimate(work.ridge_normals);
+        const double u = ridge.distance() / stencils.half_width;
+        if (!(u < 1.0)) continue;
+        const float e =
+            straight_edge_strength(stencils.pipeline.settings.profile(), u) * ridge.strength;
+        const auto lane = static_cast<int>(i);
+        strength[lane] = std::max(strength[lane], e);
+    }
+}
+
 /// Section 4.2: the sample's colour becomes the mean over itself and its stencil.
 void average_colors(const Stencils& stencils, const std::vector<HitPacket>& stencil,
                     ColorPacket& colors) {
@@ -213,6 +294,10 @@ void trace_stencils(const Stencils& stencils, Workspace& work, Vec2f offset) {
         if (stencils.shaded) {
             average_colors(stencils, work.stencil_hits, work.colors[k]);
             work.seen[k] = 1;
+        }
+        // Last, because it traces anew.
+        if (stencils.draw_lines && stencils.ridges) {
+            measure_ridges(stencils, work, k, offset, work.strengths[k]);
         }
     }
 }
@@ -255,7 +340,7 @@ void write_aovs(const Stencils& stencils, const Workspace& work, Vec2f offset) {
 void render_tile(const Stencils& stencils, Workspace& work, const Tile& tile) {
     sort_blocks(tile, stencils.pipeline.camera, stencils.reach, work.blocks, work.empty);
     // Blocks at the film's edge are whole.
-    const float reach = stencils.reach + kBlockSide;
+    const float reach = std::max(stencils.reach, stencils.ridge_reach) + kBlockSide;
     work.sampler.enter({static_cast<float>(tile.x0) - reach, static_cast<float>(tile.y0) - reach,
                         static_cast<float>(tile.x1) + reach, static_cast<float>(tile.y1) + reach});
     for (const Block block : work.empty) {
