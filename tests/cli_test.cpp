@@ -476,6 +476,79 @@ TEST_F(CommandLine, HelpOfRenderListsEverySettingUnderItsTopic) {
 
 // ---- Info ----
 
+// ---- Animations ----
+
+constexpr std::string_view kThreeFrames = "1\n\nC 0 0 0\n1\n\nC 0.5 0 0\n1\n\nC 1 0 0\n";
+
+TEST_F(CommandLine, AnimationDrawsAPictureAFrame) {
+    folder_.write("run.xyz", kThreeFrames);
+    const Arguments small{"--size", "32x24", "--quiet"};
+    const auto draw = [&](Arguments arguments) {
+        arguments.insert(arguments.end(), small.begin(), small.end());
+        return run(arguments);
+    };
+    expect_done(draw({"render", "run.xyz", "--frame", "1:", "-o", "out_##.png"}));
+    EXPECT_EQ(files(), (std::set<std::string>{"out_01.png", "out_02.png", "run.xyz"}));
+    // The camera stays where the first frame put it.
+    EXPECT_NE(read_bytes(file("out_01.png")), read_bytes(file("out_02.png")));
+    const Outcome outcome = draw({"render", "run.xyz", "--frame", "1:7", "-o", "b#.png"});
+    EXPECT_EQ(outcome.status, 1);
+    expect_says(outcome.err, {"--frame 1:7", "3 frames, 0 to 2"});
+}
+
+TEST_F(CommandLine, AnimationLeavesFinishedPicturesWhenItResumes) {
+    folder_.write("run.xyz", kThreeFrames);
+    const Arguments arguments{"render", "run.xyz", "--frame", "0:2",    "-o",
+                              "#.png",  "--size",  "32x24",   "--quiet"};
+    expect_done(run(arguments));
+    const std::string whole = read_bytes(file("2.png"));
+    folder_.write("1.png", "left alone");
+    fs::remove(file("2.png"));
+    Arguments again = arguments;
+    again.push_back("--resume");
+    expect_done(run(again));
+    EXPECT_EQ(read_bytes(file("1.png")), "left alone");
+    EXPECT_EQ(read_bytes(file("2.png")), whole);
+}
+
+TEST_F(CommandLine, TurntableGoesRoundAndFramesTheSceneFromEverySide) {
+    folder_.write("rod.csv", "x,y,z,radius\n0,0,0,1\n9,0,0,1\n");
+    for (const char* projection : {"", "auto"}) {
+        expect_done(run({"render", "rod.csv", "--turntable", "4", "-o", "t#.png", "--size", "40x40",
+                         "--view", "front", "--lines", "none", "--orthographic", projection,
+                         "--compose", "shaded", "--quiet"}));
+        // A quarter turn shows the rod from its end; half a turn shows it whole again.
+        EXPECT_NE(read_bytes(file("t0.png")), read_bytes(file("t1.png")));
+        EXPECT_TRUE(fs::exists(file("t3.png")));
+        EXPECT_FALSE(fs::exists(file("t4.png")));
+    }
+}
+
+TEST_F(CommandLine, AnimationNeedsNumbersInTheNamesOfItsPictures) {
+    folder_.write("run.xyz", kThreeFrames);
+    for (const Arguments& flags : {Arguments{"--frame", "0:2"}, Arguments{"--turntable", "4"},
+                                   Arguments{"--turntable", "4", "--frame", "0:2"}}) {
+        Arguments arguments{"render", "run.xyz", "-o", "out.png"};
+        arguments.insert(arguments.end(), flags.begin(), flags.end());
+        const Outcome outcome = run(arguments);
+        EXPECT_EQ(outcome.status, 2);
+        expect_says(outcome.err, {"-o out_####.png"});
+    }
+}
+
+TEST_F(CommandLine, SeriesOfFilesAreFramesInTheOrderPeopleCount) {
+    folder_.write("run_2.xyz", "1\n\nC 2 0 0\n");
+    folder_.write("run_10.xyz", "1\n\nC 10 0 0\n");
+    folder_.write("run_1.xyz", "1\n\nC 1 0 0\n");
+    const auto json =
+        nlohmann::json::parse(run({"info", "--json", "run_*.xyz", "--frame", "2"}).out);
+    EXPECT_EQ(json[0]["frames"], 3);
+    EXPECT_NEAR(json[0]["lower"][0].get<double>(), 10 - 1.7, 1e-6);
+    expect_says(run({"info", "none_*.xyz"}).err, {"none_*.xyz", "no file has such a name"});
+}
+
+// ---- Info ----
+
 TEST_F(CommandLine, InfoTellsWhatIsInAFile) {
     folder_.write("a.xyz", kXyz);
     folder_.write("b.stl", kStl);

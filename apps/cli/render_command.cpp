@@ -2,6 +2,7 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <filesystem>
 #include <fstream>
@@ -11,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "animation.h"
 #include "commands.h"
 #include "inktrace/inktrace.h"
 #include "messages.h"
@@ -28,6 +30,8 @@ struct RenderArguments {
     std::string stats_file;
     int repeat = 1;
     bool quiet = false;
+    int turntable = 0;    ///< pictures of a full turn; 0: no turntable
+    bool resume = false;  ///< leave pictures of an animation that are there
     Settings settings;
 };
 
@@ -95,15 +99,22 @@ void write_stats(const std::filesystem::path& file, const nlohmann::ordered_json
     refuse_stats(file);
 }
 
-Scene load(const RenderArguments& arguments) {
+struct Loaded {
     Scene scene;
+    int frames = 0;  ///< that every input has
+};
+
+Loaded load(const RenderArguments& arguments, const Settings& settings) {
+    Loaded loaded;
     for (const std::string& input : arguments.inputs) {
-        const FileInfo info = scene.load(input, arguments.settings);
+        const FileInfo info = loaded.scene.load(input, settings);
+        const bool first = loaded.frames == 0;
+        loaded.frames = first ? info.frames : std::min(loaded.frames, info.frames);
         for (const std::string& warning : info.warnings) {
             say(fmt::format("{}: warning: {}\n", input, warning));
         }
     }
-    return scene;
+    return loaded;
 }
 
 double ms_since(std::chrono::steady_clock::time_point start) {
@@ -111,13 +122,97 @@ double ms_since(std::chrono::steady_clock::time_point start) {
         .count();
 }
 
+/// Renders shot after shot by the camera of the first; a scene stays as long as its frame does.
+class Animation {
+  public:
+    explicit Animation(const RenderArguments& arguments) : arguments_(arguments) {}
+
+    void run() {
+        const auto start = std::chrono::steady_clock::now();
+        Settings settings = arguments_.settings;
+        const std::string frames = settings.get("frame");
+        const int first = std::stoi(frames.substr(0, frames.find(':')));
+        const int count = build(first);
+        shots_ = plan_shots(arguments_.output, frame_range(settings, count), arguments_.turntable);
+        camera_ = renderer_->with_camera(settings);
+        ProgressBar bar(!arguments_.quiet);
+        for (std::size_t k = 0; k < shots_.size(); ++k) draw(k, bar);
+        if (arguments_.quiet) return;
+        say(fmt::format("{}: {} pictures, {} were there, {:.2f} s\n", arguments_.output,
+                        shots_.size() - left_, left_, ms_since(start) / 1000));
+    }
+
+  private:
+    /// Loads a frame, unless it is the one that is there; returns how many the files have.
+    int build(int frame) {
+        if (renderer_ && frame == frame_) return 0;
+        Settings settings = arguments_.settings;
+        settings.set("frame", std::to_string(frame));
+        renderer_.reset();
+        Loaded loaded = load(arguments_, settings);
+        renderer_.emplace(std::move(loaded.scene));
+        frame_ = frame;
+        return loaded.frames;
+    }
+
+    void draw(std::size_t index, ProgressBar& bar) {
+        const Shot& shot = shots_[index];
+        if (arguments_.resume && std::filesystem::exists(shot.file)) {
+            ++left_;
+            return;
+        }
+        RenderOptions options = options_for_output(shot.file);
+        build(shot.frame);
+        Settings settings = arguments_.turntable > 0
+                                ? renderer_->with_turned_camera(arguments_.settings, shot.turn_deg)
+                                : *camera_;
+        settings.set("frame", std::to_string(shot.frame));
+        const auto total = static_cast<double>(shots_.size());
+        options.progress = [&](double share, double megapixels) {
+            bar.update((static_cast<double>(index) + share) / total, megapixels * total);
+        };
+        renderer_->render(settings, options).save(shot.file);
+    }
+
+    const RenderArguments& arguments_;
+    std::vector<Shot> shots_;
+    std::optional<Renderer> renderer_;
+    int frame_ = 0;  ///< of the renderer
+    std::optional<Settings> camera_;
+    std::size_t left_ = 0;
+};
+
+/// Whether the arguments ask for several pictures. Throws Error (usage) where they contradict
+/// themselves.
+bool is_animation(const RenderArguments& arguments) {
+    const bool numbered = is_numbered(arguments.output);
+    const bool frames = arguments.settings.get("frame").find(':') != std::string::npos;
+    if (!numbered && (frames || arguments.turntable > 0)) {
+        throw Error(Error::Kind::usage,
+                    "an animation needs a number in the name of its pictures; "
+                    "write for example -o out_####.png");
+    }
+    if (frames && arguments.turntable > 0) {
+        throw Error(Error::Kind::usage, "--turntable turns one frame; name one with --frame");
+    }
+    if (numbered && (arguments.repeat > 1 || !arguments.stats_file.empty())) {
+        throw Error(Error::Kind::usage, "--repeat and --stats are for one picture; leave them out");
+    }
+    return numbered;
+}
+
 void run(const RenderArguments& arguments) {
+    if (is_animation(arguments)) {
+        validate(arguments.settings, options_for_output(numbered(arguments.output, 0)));
+        Animation(arguments).run();
+        return;
+    }
     RenderOptions options = options_for_output(arguments.output);
     validate(arguments.settings, options);
     check_stats_file(arguments.stats_file);
     const auto start = std::chrono::steady_clock::now();
     Report report;
-    Scene scene = load(arguments);
+    Scene scene = load(arguments, arguments.settings).scene;
     report.load_ms = ms_since(start);
     report.primitives = scene.primitive_count();
 
@@ -173,7 +268,9 @@ void add_render_command(CLI::App& app) {
         ->type_name("FILE")
         ->group("Input");
     command
-        ->add_option("-o,--output", arguments->output, "Picture to write: .png, .jpg, .tiff, .exr")
+        ->add_option("-o,--output", arguments->output,
+                     "Picture to write: .png, .jpg, .tiff, .exr; "
+                     "### in its name is the number of a frame")
         ->type_name("FILE")
         ->required()
         ->group("Picture");
@@ -181,6 +278,16 @@ void add_render_command(CLI::App& app) {
     command->add_option("--repeat", arguments->repeat, "Render this many times, to measure [1]")
         ->type_name("K")
         ->check(CLI::Range(1, 1000000).description(""))
+        ->group("Run");
+    command
+        ->add_option("--turntable", arguments->turntable,
+                     "Pictures of a full turn round the scene, for -o out_###.png")
+        ->type_name("K")
+        ->check(CLI::Range(1, 100000).description(""))
+        ->group("Picture");
+    command
+        ->add_flag("--resume", arguments->resume,
+                   "Leave those pictures of an animation that are there already")
         ->group("Run");
     command->add_option("--stats", arguments->stats_file, "Write times and counts as JSON")
         ->type_name("FILE")

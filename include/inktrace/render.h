@@ -82,6 +82,13 @@ class Renderer {
     Renderer& operator=(Renderer&&) noexcept;
     ~Renderer();
 
+    /// The settings with the camera that they choose for this scene written out, so that other
+    /// frames are seen by the same one.
+    Settings with_camera(const Settings& settings) const;
+    /// The same for a camera that goes round the scene, `turn_deg` from where it would stand, far
+    /// enough away for every side.
+    Settings with_turned_camera(const Settings& settings, double turn_deg) const;
+
     /// The same scene and settings give the same bytes. Throws Error.
     Picture render(const Settings& settings, const RenderOptions& options = {}) const;
 

@@ -1,9 +1,12 @@
+#include <fmt/format.h>
+
 #include <chrono>
 #include <utility>
 
 #include "accel/tracer.h"
 #include "api/guard.h"
 #include "api/impl.h"
+#include "camera/views.h"
 #include "inktrace/inktrace.h"
 #include "io/atomic_file.h"
 #include "render/render.h"
@@ -61,6 +64,34 @@ ink::Metadata metadata(const Settings& settings) {
 }
 
 }  // namespace
+
+namespace {
+
+Settings with_view(const Settings& settings, const ink::ViewSettings& view) {
+    Settings copy = settings;
+    const auto text = [](ink::Vec3d v) { return fmt::format("{},{},{}", v.x, v.y, v.z); };
+    copy.set("eye", text(*view.eye)).set("look-at", text(*view.look_at)).set("up", text(*view.up));
+    if (view.orthographic) copy.set("orthographic", fmt::format("{}", *view.orthographic));
+    return copy;
+}
+
+}  // namespace
+
+Settings Renderer::with_camera(const Settings& settings) const {
+    return ink::guard([&] {
+        const ink::Settings& inner = settings.impl().settings;
+        const ink::Camera camera(impl_->scene, inner.view, inner.size);
+        return with_view(settings, ink::explicit_view(camera, impl_->scene, inner.view));
+    });
+}
+
+Settings Renderer::with_turned_camera(const Settings& settings, double turn_deg) const {
+    return ink::guard([&] {
+        const ink::Settings& inner = settings.impl().settings;
+        return with_view(settings,
+                         ink::turntable_view(impl_->scene, inner.view, inner.size, turn_deg));
+    });
+}
 
 Picture Renderer::render(const Settings& settings, const RenderOptions& options) const {
     validate(settings, options);

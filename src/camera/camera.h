@@ -72,6 +72,8 @@ class Camera {
     /// The part of the screen outside of which no ray can hit the scene.
     const ScreenBox& scene_box() const { return scene_box_; }
 
+    /// Of the view: the tangent of half the field of view, or orthographic in scene units.
+    double half_height() const { return half_height_; }
     Vec3d world_eye() const { return world_eye_; }
     Vec3d world_look_at() const { return world_look_at_; }
 

@@ -2,14 +2,17 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <fnmatch.h>
 
 #include <algorithm>
 #include <array>
 #include <system_error>
+#include <vector>
 
 #include "base/error.h"
 #include "base/text.h"
 #include "io/formats.h"
+#include "io/molecule_file.h"
 
 namespace ink {
 
@@ -67,9 +70,77 @@ FileContents read_with(const Reader& reader, const std::filesystem::path& file,
     }
 }
 
+// ---- Series ----
+
+/// "run_*.vtp": a pattern, unless there is a file of that very name.
+bool is_series(const std::filesystem::path& file) {
+    std::error_code error;
+    return file.filename().string().find_first_of("*?") != std::string::npos &&
+           !std::filesystem::exists(file, error);
+}
+
+/// Whether `a` comes before `b` as people count: run_2 before run_10.
+bool counts_before(std::string_view a, std::string_view b) {
+    const auto is_digit = [](char c) { return c >= '0' && c <= '9'; };
+    while (!a.empty() && !b.empty()) {
+        if (!is_digit(a.front()) || !is_digit(b.front())) {
+            if (a.front() != b.front()) return a.front() < b.front();
+            a.remove_prefix(1);
+            b.remove_prefix(1);
+            continue;
+        }
+        const auto take_number = [&](std::string_view& text) {
+            std::size_t zeros = 0;
+            while (zeros < text.size() && text[zeros] == '0') ++zeros;
+            std::size_t end = zeros;
+            while (end < text.size() && is_digit(text[end])) ++end;
+            const std::string_view digits = text.substr(zeros, end - zeros);
+            text.remove_prefix(end);
+            return digits;
+        };
+        const std::string_view m = take_number(a);
+        const std::string_view n = take_number(b);
+        if (m.size() != n.size()) return m.size() < n.size();
+        if (m != n) return m < n;
+    }
+    return a.size() < b.size();
+}
+
+std::vector<std::filesystem::path> files_of_series(const std::filesystem::path& pattern) {
+    const std::filesystem::path folder =
+        pattern.has_parent_path() ? pattern.parent_path() : std::filesystem::path(".");
+    std::vector<std::filesystem::path> files;
+    std::error_code error;
+    for (const auto& entry : std::filesystem::directory_iterator(folder, error)) {
+        const std::filesystem::path name = entry.path().filename();
+        if (fnmatch(pattern.filename().c_str(), name.c_str(), 0) == 0) {
+            files.push_back(pattern.has_parent_path() ? entry.path() : name);
+        }
+    }
+    std::ranges::sort(files, [](const auto& a, const auto& b) {
+        const std::string first = a.string();
+        const std::string second = b.string();
+        return counts_before(first, second) || (!counts_before(second, first) && first < second);
+    });
+    return files;
+}
+
+/// Each file of a series is a frame.
+FileContents read_series(const std::filesystem::path& pattern, const ReadOptions& options) {
+    const std::vector<std::filesystem::path> files = files_of_series(pattern);
+    if (files.empty()) throw InputError(pattern, "no file has such a name; check the pattern");
+    check_frame(options.frame, static_cast<int>(files.size()), pattern);
+    ReadOptions first = options;
+    first.frame = 0;
+    FileContents contents = read_file(files[static_cast<std::size_t>(options.frame)], first);
+    contents.frames = static_cast<int>(files.size());
+    return contents;
+}
+
 }  // namespace
 
 FileContents read_file(const std::filesystem::path& file, const ReadOptions& options) {
+    if (is_series(file)) return read_series(file, options);
     check_readable(file);
     const std::string extension = format_extension(file);
     for (const Reader& reader : readers()) {

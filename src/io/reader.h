@@ -44,7 +44,8 @@ struct Reader {
 /// All formats that can be read.
 std::span<const Reader> readers();
 
-/// Reads a file by its extension, compressed or not. Throws InputError.
+/// Reads a file by its extension, compressed or not. A name with * or ? stands for a series of
+/// files, in the order in which people count, each a frame. Throws InputError.
 FileContents read_file(const std::filesystem::path& file, const ReadOptions& options = {});
 
 /// Coordinates beyond this are refused: they are damage, not data, and their squares leave the

@@ -46,10 +46,29 @@ std::string print_word(const std::array<Word<T>, N>& words, T value) {
     return {};
 }
 
-int read_frame(std::string_view text) {
-    const auto frame = parse_int(text);
-    if (frame && *frame >= 0 && *frame <= 1 << 30) return static_cast<int>(*frame);
-    throw UsageError(fmt::format("'{}' is not a frame; write a whole number from 0 on", text));
+/// "7", "0:20" or "5:".
+void read_frame(Settings& settings, std::string_view text) {
+    const auto ends = split(text, ':');
+    const auto number = [&](std::string_view word) {
+        const auto frame = parse_int(word);
+        if (frame && *frame >= 0 && *frame < Settings::kLastOfFile) return static_cast<int>(*frame);
+        throw UsageError(fmt::format(
+            "'{}' is not a frame; write a whole number from 0 on, or FIRST:LAST", text));
+    };
+    const int first = number(ends[0]);
+    const bool open = ends.size() == 2 && ends[1].empty();
+    const int last = open ? Settings::kLastOfFile : number(ends.back());
+    if (ends.size() > 2 || last < first) {
+        throw UsageError(fmt::format("'{}' is not a range of frames; write FIRST:LAST", text));
+    }
+    settings.frame = first;
+    settings.last_frame = last;
+}
+
+std::string print_frame(const Settings& settings) {
+    if (settings.last_frame == settings.frame) return fmt::format("{}", settings.frame);
+    if (settings.last_frame == Settings::kLastOfFile) return fmt::format("{}:", settings.frame);
+    return fmt::format("{}:{}", settings.frame, settings.last_frame);
 }
 
 std::string read_select(std::string_view text) {
@@ -133,9 +152,9 @@ std::vector<Setting> data_settings_rows() {
     using S = Settings;
     using Text = std::string_view;
     return {
-        {"frame", "Input", "K", "Frame to draw of a file that has several, from 0",
-         [](S& s, Text t) { s.frame = read_frame(t); },
-         [](const S& s) { return fmt::format("{}", s.frame); }},
+        {"frame", "Input", "K|A:B",
+         "Frame to draw of a file that has several, from 0; A:B or A: for an animation",
+         [](S& s, Text t) { read_frame(s, t); }, [](const S& s) { return print_frame(s); }},
         {"select", "Input", "ATOMS",
          "Atoms to draw, as 'chain A and not water' or 'resn HEM or resi 10-20'; words: protein, "
          "nucleic, water, ligand, ions, hydrogens, backbone, sidechain, chain, resn, resi, name, "

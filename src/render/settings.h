@@ -46,7 +46,9 @@ enum class LineBlend : std::uint8_t { automatic, display, linear };
 struct Settings {
     Size size{1024, 1024};
     double dpi = 300.0;
-    int frame = 0;
+    int frame = 0;       ///< the first one that is drawn
+    int last_frame = 0;  ///< of an animation; kLastOfFile: whatever the file has
+    static constexpr int kLastOfFile = 1 << 30;
     DataSettings data;
 
     ViewSettings view;
