@@ -56,13 +56,36 @@ constexpr Vec3f to_float(Vec3d a) {
 }
 
 /// A point or a step on the screen, in pixels: x right, y down.
-struct Vec2f {
-    float x{}, y{};
+template <class T>
+struct Vec2 {
+    T x{}, y{};
 
-    friend constexpr Vec2f operator+(Vec2f a, Vec2f b) { return {a.x + b.x, a.y + b.y}; }
-    friend constexpr Vec2f operator-(Vec2f a, Vec2f b) { return {a.x - b.x, a.y - b.y}; }
-    friend constexpr Vec2f operator*(Vec2f a, float s) { return {a.x * s, a.y * s}; }
-    friend constexpr bool operator==(Vec2f a, Vec2f b) = default;
+    friend constexpr Vec2 operator+(Vec2 a, Vec2 b) { return {a.x + b.x, a.y + b.y}; }
+    friend constexpr Vec2 operator-(Vec2 a, Vec2 b) { return {a.x - b.x, a.y - b.y}; }
+    friend constexpr Vec2 operator*(Vec2 a, T s) { return {a.x * s, a.y * s}; }
+    friend constexpr bool operator==(Vec2 a, Vec2 b) = default;
 };
+
+using Vec2f = Vec2<float>;
+using Vec2d = Vec2<double>;
+
+template <class T>
+constexpr T dot(Vec2<T> a, Vec2<T> b) {
+    return a.x * b.x + a.y * b.y;
+}
+
+/// Positive where `b` is clockwise of `a` on the screen.
+template <class T>
+constexpr T cross(Vec2<T> a, Vec2<T> b) {
+    return a.x * b.y - a.y * b.x;
+}
+
+template <class T>
+T length(Vec2<T> a) {
+    return std::sqrt(dot(a, a));
+}
+
+constexpr Vec2d to_double(Vec2f a) { return {a.x, a.y}; }
+constexpr Vec2f to_float(Vec2d a) { return {static_cast<float>(a.x), static_cast<float>(a.y)}; }
 
 }  // namespace ink

@@ -69,7 +69,8 @@ void Connector::add_port(const SampleGrid& grid, int i, int j, int side, const S
     const auto first = static_cast<std::uint32_t>(grid.index(edge.i, edge.j));
     const auto second = static_cast<std::uint32_t>(edge.down ? grid.index(edge.i, edge.j + 1)
                                                              : grid.index(edge.i + 1, edge.j));
-    Port port{0.0F, &crossing, crossing.first, crossing.second, first, second};
+    Port port{0.0F,  &crossing, crossing.first,         crossing.second,
+              first, second,    crossing.first_in_front};
     switch (side) {
         case kTop: port.way = inside.x; break;
         case kRight: port.way = 1.0F + inside.y; break;
@@ -79,6 +80,7 @@ void Connector::add_port(const SampleGrid& grid, int i, int j, int side, const S
     if (side == kBottom || side == kLeft) {  // walked from the second end to the first
         std::swap(port.before, port.after);
         std::swap(port.before_sample, port.after_sample);
+        port.before_in_front = !port.before_in_front;
     }
     ports_.push_back(port);
 }
@@ -165,6 +167,11 @@ Segment Connector::make_segment(const Port& from, const Port& to) {
     segment.spans_cell = true;
     segment.strength = 0.5F * (p.strength + q.strength);
     segment.t = 0.5F * (p.t + q.t);
+    segment.type_at_b = q.type;
+    const bool mesh = q.type == LineType::mesh;
+    segment.left_at_b = mesh ? q.nearer : to.before;
+    segment.right_at_b = mesh ? q.nearer : to.after;
+    segment.left_in_front_at_b = to.before_in_front;
     return segment;
 }
 
@@ -173,14 +180,15 @@ Segment Connector::make_segment(const Port& from, Vec2f to) {
     Segment segment;
     segment.a = p.point;
     segment.b = to;
-    segment.type = p.type;
+    segment.type = segment.type_at_b = p.type;
     segment.strength = p.strength;
     segment.t = p.t;
     segment.owner = p.nearer;
     // Lines between faces are told apart by the faces, and lie within one geometry.
     const bool mesh = p.type == LineType::mesh;
-    segment.left = mesh ? p.nearer : from.after;
-    segment.right = mesh ? p.nearer : from.before;
+    segment.left = segment.left_at_b = mesh ? p.nearer : from.after;
+    segment.right = segment.right_at_b = mesh ? p.nearer : from.before;
+    segment.left_in_front = segment.left_in_front_at_b = !from.before_in_front;
     segment.left_sample = from.after_sample;
     segment.right_sample = from.before_sample;
     return segment;

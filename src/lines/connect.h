@@ -26,6 +26,7 @@ class Connector {
         const Crossing* crossing;
         GeometryId before, after;  ///< IDs on the way round
         std::uint32_t before_sample, after_sample;
+        bool before_in_front;  ///< of the two sides
     };
 
     void add_port(const SampleGrid& grid, int i, int j, int side, const SuspectEdge& edge,

@@ -300,6 +300,7 @@ bool Locator::classify(const Interval& interval, Crossing& crossing) const {
     crossing.point = (interval.a + interval.b) * 0.5F;
     const bool a_in_front = b.id == kBackground || (a.id != kBackground && a.t <= b.t);
     crossing.nearer = a_in_front ? a.id : b.id;
+    crossing.first_in_front = a_in_front;
     crossing.t = a_in_front ? a.t : b.t;
     if (interval.suspicion == Suspicion::id) {
         const bool both = a.id != kBackground && b.id != kBackground;

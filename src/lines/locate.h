@@ -59,6 +59,7 @@ struct Crossing {
     /// IDs at the edge's first and second end's side; of a mesh line, numbers for the faces.
     GeometryId first = kBackground, second = kBackground;
     GeometryId nearer = kBackground;  ///< the one of the two that lies in front
+    bool first_in_front = true;       ///< whether that is the first end's side
 };
 
 /// Finds where lines cross suspect edges, and classifies them. Between balls the crossing is

@@ -19,6 +19,11 @@ struct Segment {
     /// lines within one geometry.
     GeometryId left = kBackground, right = kBackground;
     GeometryId owner = kBackground;  ///< the geometry whose line it is: the nearer of the two
+    bool left_in_front = true;  ///< which side is nearer to the viewer
+    /// The same as found at b: another line may end on this one, and what is behind it change.
+    LineType type_at_b = LineType::silhouette;
+    GeometryId left_at_b = kBackground, right_at_b = kBackground;
+    bool left_in_front_at_b = true;
     /// Lattice points whose colours the two sides have: indices into the grid that was searched.
     std::uint32_t left_sample = 0, right_sample = 0;
     bool spans_cell =

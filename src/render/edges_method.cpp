@@ -64,7 +64,8 @@ Edges::Edges(const Pipeline& shared)
     : pipeline(shared),
       q(shared.settings.lattice_points()),
       surfaces(shared.scene, shared.settings.shading.normals),
-      draw_lines(shared.settings.draws_lines()),
+      draw_lines(shared.lines.ink),
+      find_lines(draw_lines || shared.lines.drawing != nullptr),
       smooth_shading(shared.settings.smoothing().kind == AntiAliasing::Kind::edges),
       wanted(shared.settings.lines),
       styles_by_object(has_object_rules(shared.settings)),
@@ -79,7 +80,7 @@ Edges::Edges(const Pipeline& shared)
     viewpoint = {camera.eye(), -camera.back(), camera.orthographic(),
                  affine(rays.origin, rays.origin_dx, rays.origin_dy),
                  affine(rays.dir, rays.dir_dx, rays.dir_dy)};
-    const int reach = static_cast<int>(std::ceil(draw_lines ? ink.reach() : 1.0F)) + 1;
+    const int reach = static_cast<int>(std::ceil(find_lines ? ink.reach() : 1.0F)) + 1;
     margin = (reach + kBlockSide - 1) / kBlockSide * kBlockSide;
     const Size size = shared.settings.size;
     no_lines =
@@ -99,6 +100,26 @@ std::size_t Edges::style_of(const Segment& segment) const {
 }
 
 namespace {
+
+/// Hands out what the drawing needs of the segments of all tiles.
+void keep_lines(const Edges& edges, const std::vector<std::vector<ColoredSegment>>& found,
+                Drawing& drawing) {
+    drawing.spacing = 1.0F / static_cast<float>(edges.q);
+    const Vec2f half{0.5F * drawing.spacing, 0.5F * drawing.spacing};
+    const Tile& first = edges.search_tiles.front();
+    const Tile& last = edges.search_tiles.back();
+    drawing.lower = Vec2f{static_cast<float>(first.x0), static_cast<float>(first.y0)} + half;
+    drawing.upper = Vec2f{static_cast<float>(last.x1), static_cast<float>(last.y1)} + half;
+    drawing.segments.clear();
+    for (const std::vector<ColoredSegment>& tile : found) {
+        for (const ColoredSegment& line : tile) {
+            const Segment& segment = line.segment;
+            if (segment.left != segment.right || edges.wanted.has(segment.type)) {
+                drawing.segments.push_back(segment);
+            }
+        }
+    }
+}
 
 template <class Worker>
 RenderStats total_of(const std::vector<std::unique_ptr<Worker>>& workers) {
@@ -129,6 +150,7 @@ RenderStats render_edges(const Pipeline& pipeline, const RenderControl& control)
     for (const auto& finder : finders) {
         if (finder) density += finder->density();
     }
+    if (pipeline.lines.drawing != nullptr) keep_lines(edges, found, *pipeline.lines.drawing);
 
     std::vector<std::unique_ptr<LineDrawer>> drawers(pool);
     loop.run(edges.draw_tiles.size(), [&](std::size_t i, std::size_t worker) {

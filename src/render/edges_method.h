@@ -33,7 +33,8 @@ struct Edges {
     const Pipeline& pipeline;
     int q;  ///< lattice points along a pixel's side
     Surfaces surfaces;
-    bool draw_lines;
+    bool draw_lines;      ///< on the film
+    bool find_lines;      ///< for the film, or as data
     bool smooth_shading;  ///< blend the colours of pixels that a line cuts
     DetectSettings detect;
     LocateSettings locate;

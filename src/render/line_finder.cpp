@@ -183,7 +183,7 @@ std::array<float, 4> LineFinder::color_at(int i, int j) const {
 
 std::vector<ColoredSegment> LineFinder::find_lines() {
     const Timer timer(stats_.lines_ms);
-    if (!edges_.draw_lines && !edges_.smooth_shading) return {};
+    if (!edges_.find_lines && !edges_.smooth_shading) return {};
     if (edges_.wants_faces()) fill_faces();
     detect(grid_, edges_.detect, suspects_);
     sort_out_suspects();

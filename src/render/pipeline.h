@@ -18,17 +18,24 @@
 
 namespace ink {
 
+/// What becomes of the lines that method "edges" finds.
+struct LineOutput {
+    bool ink = true;             ///< drawn on the film
+    Drawing* drawing = nullptr;  ///< null: not kept
+};
+
 /// What every method works with.
 struct Pipeline {
     Pipeline(const Scene& all_objects, const Tracer& scene_tracer, const Settings& all,
-             Film& target)
+             Film& target, const LineOutput& line_output)
         : scene(all_objects),
           settings(all),
           camera(scene, all.view, all.size),
           frame(scene_tracer.frame(camera.projection(), all.threads)),
           shader(scene, camera, all.shading),
           ids(scene, all.ids),
-          film(target) {
+          film(target),
+          lines(line_output) {
         if (!all.aovs.empty()) aovs.emplace(scene, camera, all.aovs, locates(), target);
     }
 
@@ -36,7 +43,8 @@ struct Pipeline {
     /// one ray a pixel.
     bool locates() const {
         return settings.method == Method::edges &&
-               (settings.draws_lines() || settings.smoothing().kind == AntiAliasing::Kind::edges);
+               (settings.draws_lines() || lines.drawing != nullptr ||
+                settings.smoothing().kind == AntiAliasing::Kind::edges);
     }
 
     const Scene& scene;
@@ -46,6 +54,7 @@ struct Pipeline {
     Shader shader;
     LineIds ids;
     Film& film;
+    LineOutput lines;
     std::optional<AovWriter> aovs;
 };
 

@@ -41,12 +41,14 @@ RenderStats RenderStats::mean_over(int thread_count) const {
 }
 
 Film render(const Scene& scene, const Tracer& tracer, const Settings& settings,
-            const PixelFormats& formats, const RenderControl& control, RenderStats* stats) {
+            const PixelFormats& formats, const RenderControl& control, RenderStats* stats,
+            Drawing* drawing) {
     double render_ms = 0.0;
     std::optional<Timer> timer(render_ms);
     validate(settings);
     Film film(settings.size, film_settings(settings, formats));
-    const Pipeline pipeline(scene, tracer, settings, film);
+    const Pipeline pipeline(scene, tracer, settings, film,
+                            {.ink = formats.lines && settings.draws_lines(), .drawing = drawing});
     RenderStats result;
     result =
         pipeline.locates() ? render_edges(pipeline, control) : render_stencils(pipeline, control);

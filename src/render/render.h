@@ -6,6 +6,7 @@
 
 #include "accel/tracer.h"
 #include "film/film.h"
+#include "render/drawing.h"
 #include "render/settings.h"
 #include "scene/scene.h"
 
@@ -41,12 +42,14 @@ struct RenderStats {
 struct PixelFormats {
     bool display = true;
     bool linear = false;
+    bool lines = true;  ///< draw the lines with them
 };
 
 /// Renders the scene, of which `tracer` must have been made. The same arguments give the same
-/// bytes, whatever the number of threads and the size of tiles.
+/// bytes, whatever the number of threads and the size of tiles. Method "edges" hands out its lines
+/// through `drawing` as well, if it is not null.
 Film render(const Scene& scene, const Tracer& tracer, const Settings& settings,
             const PixelFormats& formats = {}, const RenderControl& control = {},
-            RenderStats* stats = nullptr);
+            RenderStats* stats = nullptr, Drawing* drawing = nullptr);
 
 }  // namespace ink

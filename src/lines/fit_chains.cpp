@@ -1,0 +1,83 @@
+#include "lines/fit_chains.h"
+
+#include <algorithm>
+#include <optional>
+#include <utility>
+
+#include "base/parallel.h"
+
+namespace ink {
+
+namespace {
+
+/// The points of a path, each once, and where its chains begin and end among them.
+struct PathPoints {
+    std::vector<Vec2f> points;
+    std::vector<std::size_t> cuts;
+
+    void take(const ChainGraph& graph, const Path& path) {
+        points.clear();
+        cuts.assign(1, 0);
+        for (const PathStep& step : path.steps) {
+            const Chain& chain = graph.chains[step.chain];
+            if (!points.empty()) points.pop_back();
+            if (step.reversed) {
+                points.insert(points.end(), chain.points.rbegin(), chain.points.rend());
+            } else {
+                points.insert(points.end(), chain.points.begin(), chain.points.end());
+            }
+            cuts.push_back(points.size() - 1);
+        }
+        if (!path.closed) return;
+        const bool one_chain = graph.chains[path.steps.front().chain].closed;
+        if (!one_chain) points.pop_back();
+        cuts.back() = points.size();
+    }
+};
+
+}  // namespace
+
+Curve reversed(const Curve& curve) {
+    Curve back{curve.pieces.empty() ? curve.start : curve.pieces.back().end, {}};
+    for (std::size_t k = curve.pieces.size(); k-- > 0;) {
+        const CurvePiece& piece = curve.pieces[k];
+        const Vec2f end = k == 0 ? curve.start : curve.pieces[k - 1].end;
+        back.pieces.push_back({piece.control2, piece.control1, end, piece.straight});
+    }
+    return back;
+}
+
+std::vector<Curve> fit_chains(const ChainGraph& graph, const FitSettings& settings, int threads) {
+    struct Worker {
+        explicit Worker(const FitSettings& all) : fitter(all) {}
+        CurveFitter fitter;
+        PathPoints points;
+        std::vector<Curve> curves;
+    };
+    std::vector<Curve> curves(graph.chains.size());
+    const int count = threads > 0 ? threads : hardware_threads();
+    std::vector<std::optional<Worker>> workers(static_cast<std::size_t>(count));
+    constexpr std::size_t kGrain = 32;  // paths; most are short
+    parallel_for((graph.paths.size() + kGrain - 1) / kGrain, count,
+                 [&](std::size_t group, std::size_t index) {
+                     if (!workers[index]) workers[index].emplace(settings);
+                     Worker& worker = *workers[index];
+                     const std::size_t end = std::min(graph.paths.size(), (group + 1) * kGrain);
+                     for (std::size_t p = group * kGrain; p < end; ++p) {
+                         const Path& path = graph.paths[p];
+                         worker.points.take(graph, path);
+                         worker.curves.clear();
+                         worker.fitter.fit(worker.points.points, path.closed, worker.points.cuts,
+                                           worker.curves);
+                         for (std::size_t k = 0; k < path.steps.size(); ++k) {
+                             const PathStep& step = path.steps[k];
+                             Curve& curve = worker.curves[k];
+                             curves[step.chain] =
+                                 step.reversed ? reversed(curve) : std::move(curve);
+                         }
+                     }
+                 });
+    return curves;
+}
+
+}  // namespace ink

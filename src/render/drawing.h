@@ -1,0 +1,21 @@
+#pragma once
+
+#include <vector>
+
+#include "base/vec.h"
+#include "lines/segment.h"
+
+namespace ink {
+
+/// The lines of a frame as data, for what is not made of pixels.
+struct Drawing {
+    /// Those of the types that were asked for, and all that divide two geometries. Their order
+    /// depends on the tiles; `left_sample` and `right_sample` mean nothing any more.
+    std::vector<Segment> segments;
+    float spacing = 1.0F;  ///< of the lattice, pixels
+    /// Corners of the rectangle that was searched, pixels: beyond the picture by what lines reach
+    /// in from there.
+    Vec2f lower, upper;
+};
+
+}  // namespace ink
