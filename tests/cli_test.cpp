@@ -329,9 +329,10 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{"no_input", {"render", "-o", "a.png"}, {"INPUT is required", kSeeHelp}},
         Mistake{"no_output", {"render", kSample}, {"--output is required", kSeeHelp}},
         draw("output_with_unknown_extension", kSample, "a.foo",
-             {"a.foo: ", "cannot tell the picture's format", ".png, .jpg, .tiff or .exr"}),
+             {"a.foo: ", "cannot tell the picture's format",
+              ".png, .jpg, .tiff, .exr, .svg or .pdf"}),
         draw("output_without_extension", kSample, "a",
-             {"a: ", "cannot tell the picture's format", ".png, .jpg, .tiff or .exr"})),
+             {"a: ", "cannot tell the picture's format", ".png, .jpg, .tiff, .exr, .svg or .pdf"})),
     name_of);
 
 INSTANTIATE_TEST_SUITE_P(
@@ -396,6 +397,47 @@ TEST_F(CommandLine, LeavesNothingOnADiskThatIsFull) {
     EXPECT_EQ(files(), std::set<std::string>{"full.png"});
 }
 
+TEST_F(CommandLine, DrawsLinesAsCurves) {
+    const Outcome outcome = run({"render", kSample, "-o", "a.svg", "--lines-json", "a.json",
+                                 "--size", "200x150", "--line-width", "2"});
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    EXPECT_EQ(files(), (std::set<std::string>{"a.svg", "a.json"}));
+    const std::string svg = read_bytes(file("a.svg"));
+    expect_says(svg, {"viewBox=\"0 0 200 150\"", "stroke-width=\"2\"", "id=\"regions\"",
+                      "--size 200x150 --line-width 2px", "</svg>"});
+    const auto json = nlohmann::json::parse(read_bytes(file("a.json")));
+    EXPECT_EQ(json["format"], "inktrace-lines");
+    EXPECT_GT(json["lines"].size(), 30U);
+
+    EXPECT_EQ(run({"render", kSample, "-o", "a.pdf", "--size", "200x150"}).status, 0);
+    EXPECT_TRUE(read_bytes(file("a.pdf")).starts_with("%PDF-"));
+}
+
+TEST_F(CommandLine, WritesAovsBesideCurvesAsPictures) {
+    EXPECT_EQ(run({"render", kSample, "-o", "a.svg", "--size", "40x30", "--aov", "depth"}).status,
+              0);
+    EXPECT_EQ(files(), (std::set<std::string>{"a.svg", "a.depth.png"}));
+}
+
+TEST_F(CommandLine, RefusesCurvesWithoutLocatedLines) {
+    for (const Arguments& output :
+         {Arguments{"a.svg"}, Arguments{"a.png", "--lines-json", "b.json"}}) {
+        Arguments arguments{"render", kSample, "--method", "stencil", "-o"};
+        arguments.insert(arguments.end(), output.begin(), output.end());
+        const Outcome outcome = run(arguments);
+        EXPECT_EQ(outcome.status, 2);
+        expect_says(outcome.err, {"--method", "edges"});
+    }
+    EXPECT_EQ(files(), std::set<std::string>{});
+}
+
+TEST_F(CommandLine, ChecksTheFileForLinesBeforeItRenders) {
+    const Outcome outcome = run({"render", kSample, "-o", "a.png", "--lines-json", "no/b.json"});
+    EXPECT_EQ(outcome.status, 1);
+    expect_says(outcome.err, {"no/b.json"});
+    EXPECT_EQ(files(), std::set<std::string>{});
+}
+
 class EveryFormat : public CommandLine, public testing::WithParamInterface<const char*> {};
 
 TEST_P(EveryFormat, LeavesNothingWhereFilesMayNotGrowAsLarge) {
@@ -416,7 +458,8 @@ TEST_P(EveryFormat, KeepsAnOlderPictureWhenANewOneFails) {
     EXPECT_EQ(contents(), (std::map<std::string, std::string>{{name, "older"}}));
 }
 
-INSTANTIATE_TEST_SUITE_P(Written, EveryFormat, testing::Values(".png", ".jpg", ".tiff", ".exr"),
+INSTANTIATE_TEST_SUITE_P(Written, EveryFormat,
+                         testing::Values(".png", ".jpg", ".tiff", ".exr", ".svg", ".pdf"),
                          [](const auto& format) { return std::string(format.param + 1); });
 
 TEST_F(CommandLine, FailsWhereStandardOutputCannotBeWritten) {

@@ -27,6 +27,7 @@ struct RenderArguments {
     std::vector<std::string> inputs;
     std::string scene;  ///< a scene file, drawn before the inputs
     std::string output;
+    std::string lines_file;
     std::string stats_file;
     int repeat = 1;
     bool quiet = false;
@@ -65,6 +66,7 @@ nlohmann::ordered_json to_json(const RenderArguments& arguments, const Picture& 
     json["trace_ms"] = list(&RenderStats::trace_ms);
     json["lines_ms"] = list(&RenderStats::lines_ms);
     json["shade_ms"] = list(&RenderStats::shade_ms);
+    json["curves_ms"] = list(&RenderStats::curves_ms);
     json["rays"] = picture.stats().rays;
     json["crossings"] = picture.stats().crossings;
     json["peak_rss_bytes"] = peak_rss_bytes();
@@ -195,8 +197,10 @@ bool is_animation(const RenderArguments& arguments) {
     if (frames && arguments.turntable > 0) {
         throw Error(Error::Kind::usage, "--turntable turns one frame; name one with --frame");
     }
-    if (numbered && (arguments.repeat > 1 || !arguments.stats_file.empty())) {
-        throw Error(Error::Kind::usage, "--repeat and --stats are for one picture; leave them out");
+    const bool one_more_file = !arguments.stats_file.empty() || !arguments.lines_file.empty();
+    if (numbered && (arguments.repeat > 1 || one_more_file)) {
+        throw Error(Error::Kind::usage,
+                    "--repeat, --stats and --lines-json are for one picture; leave them out");
     }
     return numbered;
 }
@@ -208,6 +212,10 @@ void run(const RenderArguments& arguments) {
         return;
     }
     RenderOptions options = options_for_output(arguments.output);
+    if (!arguments.lines_file.empty()) {
+        check_output(arguments.lines_file);
+        options.curves = true;
+    }
     validate(arguments.settings, options);
     check_stats_file(arguments.stats_file);
     const auto start = std::chrono::steady_clock::now();
@@ -228,6 +236,7 @@ void run(const RenderArguments& arguments) {
         report.renders.push_back(picture->stats());
     }
     picture->save(arguments.output);
+    if (!arguments.lines_file.empty()) picture->save_lines(arguments.lines_file);
     if (!arguments.stats_file.empty()) {
         write_stats(arguments.stats_file, to_json(arguments, *picture, report));
     }
@@ -269,12 +278,17 @@ void add_render_command(CLI::App& app) {
         ->group("Input");
     command
         ->add_option("-o,--output", arguments->output,
-                     "Picture to write: .png, .jpg, .tiff, .exr; "
+                     "Picture to write: .png, .jpg, .tiff, .exr; as curves: .svg, .pdf; "
                      "### in its name is the number of a frame")
         ->type_name("FILE")
         ->required()
         ->group("Picture");
     add_setting_flags(*command, arguments->settings);
+    command
+        ->add_option("--lines-json", arguments->lines_file,
+                     "Write the lines as polylines with their types, names and depths, too")
+        ->type_name("FILE")
+        ->group("Curves");
     command->add_option("--repeat", arguments->repeat, "Render this many times, to measure [1]")
         ->type_name("K")
         ->check(CLI::Range(1, 1000000).description(""))

@@ -3,6 +3,7 @@
 /// The public interface of Inktrace. See examples/ for programs that use nothing else.
 
 #include "inktrace/error.h"
+#include "inktrace/lines.h"
 #include "inktrace/render.h"
 #include "inktrace/scene.h"
 #include "inktrace/settings.h"

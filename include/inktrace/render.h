@@ -9,7 +9,9 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
+#include "inktrace/lines.h"
 #include "inktrace/scene.h"
 #include "inktrace/settings.h"
 
@@ -21,6 +23,7 @@ struct RenderStats {
     double trace_ms = 0.0;
     double lines_ms = 0.0;
     double shade_ms = 0.0;
+    double curves_ms = 0.0;  ///< after `render_ms`: joining lines and fitting curves to them
     std::uint64_t rays = 0;
     std::uint64_t crossings = 0;  ///< of lines with the lattice, located by method "edges"
     int threads = 0;
@@ -41,11 +44,16 @@ class Picture {
     /// for) or an AOV such as "Z". Empty where there is none.
     std::span<const float> channel(std::string_view name) const;
     const RenderStats& stats() const;
+    /// The lines as data; empty unless asked for with `RenderOptions::curves`.
+    std::vector<Polyline> lines() const;
 
-    /// Writes .png, .jpg, .tiff or .exr (which needs `linear` pixels), with the settings in the
-    /// file's metadata. AOVs become channels of an EXR, or pictures beside any other file
-    /// ("x.depth.png"). Files appear whole or not at all. Throws Error (input).
+    /// Writes .png, .jpg, .tiff, .exr (which needs `linear` pixels), .svg or .pdf (which need
+    /// `curves`), with the settings in the file's metadata. AOVs become channels of an EXR, or
+    /// pictures beside any other file ("x.depth.png"). Files appear whole or not at all. Throws
+    /// Error (input).
     void save(const std::filesystem::path& file) const;
+    /// Writes the lines as JSON (docs/formats.md); needs `curves`. Likewise.
+    void save_lines(const std::filesystem::path& file) const;
 
     struct Impl;
     explicit Picture(std::unique_ptr<Impl> impl);
@@ -58,6 +66,8 @@ class Picture {
 struct RenderOptions {
     bool display = true;  ///< make 8-bit sRGB pixels
     bool linear = false;  ///< make linear float pixels, as an EXR holds them
+    bool curves = false;  ///< keep the lines as curves, which takes method edges
+    bool inked = true;    ///< draw the lines on the pixels; SVG and PDF draw their own on top
     /// Called with the share that is done, in (0, 1], and the size of the whole in megapixels, from
     /// the rendering threads, one at a time.
     std::function<void(double share, double megapixels)> progress;
@@ -68,6 +78,9 @@ struct RenderOptions {
 /// What `save` to this file needs. Throws Error (usage) for an extension that is not a picture's,
 /// Error (input) where the file cannot be written, before any time is spent.
 RenderOptions options_for_output(const std::filesystem::path& file);
+
+/// Throws Error (input) where a file cannot be written, before any time is spent.
+void check_output(const std::filesystem::path& file);
 
 /// Throws Error (usage) where `Renderer::render` would refuse the settings whatever the scene, as a
 /// picture that does not fit into memory: worth asking before a large scene is loaded.

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "base/image.h"
@@ -9,6 +10,7 @@
 #include "inktrace/settings.h"
 #include "render/settings.h"
 #include "scene/scene.h"
+#include "vector/line_art.h"
 
 /// What the public classes hold.
 
@@ -26,4 +28,5 @@ struct inktrace::Picture::Impl {
     std::vector<ink::Aov> aovs;
     ink::Metadata metadata;
     RenderStats stats;
+    std::optional<ink::LineArt> line_art{};
 };

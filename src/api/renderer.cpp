@@ -9,7 +9,9 @@
 #include "camera/views.h"
 #include "inktrace/inktrace.h"
 #include "io/atomic_file.h"
+#include "render/pipeline.h"
 #include "render/render.h"
+#include "vector/line_art.h"
 
 namespace inktrace {
 
@@ -44,7 +46,15 @@ double Renderer::build_ms() const { return impl_->build_ms; }
 
 void validate(const Settings& settings, const RenderOptions& options) {
     const int color_bytes = (options.display ? 4 : 0) + (options.linear ? 16 : 0);
-    ink::guard([&] { ink::validate(settings.impl().settings, color_bytes); });
+    ink::guard([&] {
+        const ink::Settings& inner = settings.impl().settings;
+        ink::validate(inner, color_bytes);
+        if (options.curves && inner.method != ink::Method::edges) {
+            throw ink::UsageError(
+                "--method: lines become curves with method edges only, which locates them; leave "
+                "it out, or write a picture of pixels");
+        }
+    });
 }
 
 namespace {
@@ -103,21 +113,30 @@ Picture Renderer::render(const Settings& settings, const RenderOptions& options)
             const double megapixels = static_cast<double>(inner.size.pixels()) * 1e-6;
             progress = [&, megapixels](double share) { options.progress(share, megapixels); };
         }
-        ink::Film film = ink::render(impl_->scene, *impl_->tracer, inner,
-                                     {.display = options.display, .linear = options.linear},
-                                     {.progress = progress, .cancel = options.cancel}, &stats);
-        return Picture(
-            std::make_unique<Picture::Impl>(Picture::Impl{.film = std::move(film),
-                                                          .dpi = inner.dpi,
-                                                          .aovs = inner.aovs,
-                                                          .metadata = metadata(settings),
-                                                          .stats = {.render_ms = stats.render_ms,
-                                                                    .trace_ms = stats.trace_ms,
-                                                                    .lines_ms = stats.lines_ms,
-                                                                    .shade_ms = stats.shade_ms,
-                                                                    .rays = stats.rays,
-                                                                    .crossings = stats.crossings,
-                                                                    .threads = stats.threads}}));
+        ink::Drawing drawing;
+        Picture::Impl picture{
+            .film = ink::render(
+                impl_->scene, *impl_->tracer, inner,
+                {.display = options.display, .linear = options.linear, .lines = options.inked},
+                {.progress = progress, .cancel = options.cancel}, &stats,
+                options.curves ? &drawing : nullptr),
+            .dpi = inner.dpi,
+            .aovs = inner.aovs,
+            .metadata = metadata(settings),
+            .stats = {.render_ms = stats.render_ms,
+                      .trace_ms = stats.trace_ms,
+                      .lines_ms = stats.lines_ms,
+                      .shade_ms = stats.shade_ms,
+                      .rays = stats.rays,
+                      .crossings = stats.crossings,
+                      .threads = stats.threads}};
+        if (options.curves) {
+            const ink::Timer timer(picture.stats.curves_ms);
+            picture.line_art =
+                ink::make_line_art(impl_->scene, inner, drawing, picture.film.display());
+            picture.line_art->metadata = picture.metadata;
+        }
+        return Picture(std::make_unique<Picture::Impl>(std::move(picture)));
     });
 }
 

@@ -6,7 +6,10 @@
 #include <array>
 #include <cassert>
 #include <cerrno>
+#include <cstdlib>
 #include <functional>
+#include <memory>
+#include <new>
 #include <string_view>
 #include <utility>
 
@@ -19,6 +22,10 @@ namespace ink {
 
 ByteSink::ByteSink(const std::filesystem::path& file) noexcept
     : file_(std::fopen(file.c_str(), "wb")) {
+    if (!file_) error_ = errno;
+}
+
+ByteSink::ByteSink(std::FILE* stream) noexcept : file_(stream) {
     if (!file_) error_ = errno;
 }
 
@@ -55,8 +62,6 @@ std::string as_text(const Metadata& metadata) {
     return text;
 }
 
-namespace {
-
 void write_whole(const std::filesystem::path& file, const std::function<void(ByteSink&)>& encode) {
     AtomicFile output(file);
     ByteSink sink(output.path());
@@ -73,7 +78,16 @@ void write_whole(const std::filesystem::path& file, const std::function<void(Byt
     output.commit();
 }
 
-}  // namespace
+std::string png_bytes(const DisplayImage& image, double dpi) {
+    char* bytes = nullptr;
+    std::size_t count = 0;
+    ByteSink sink(::open_memstream(&bytes, &count));
+    const std::unique_ptr<char*, void (*)(char**)> owner(&bytes, [](char** p) { std::free(*p); });
+    encode_png(sink, image, dpi, {});
+    sink.close();
+    if (sink.error() != 0) throw std::bad_alloc();
+    return {bytes, count};
+}
 
 std::optional<ImageFormat> image_format(const std::filesystem::path& file) {
     static constexpr std::array<std::pair<std::string_view, ImageFormat>, 6> kExtensions{{

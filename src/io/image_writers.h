@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <cstdio>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <stdexcept>
 #include <string>
@@ -21,6 +22,8 @@ static_assert(std::endian::native == std::endian::little,
 class ByteSink {
   public:
     explicit ByteSink(const std::filesystem::path& file) noexcept;
+    /// Takes over an open stream; null is a failure that `errno` explains.
+    explicit ByteSink(std::FILE* stream) noexcept;
 
     void write(const void* bytes, std::size_t count) noexcept;
     /// `origin` as for fseek.
@@ -50,6 +53,12 @@ void encode_png(ByteSink& sink, const DisplayImage& image, double dpi, const Met
 void encode_jpeg(ByteSink& sink, const DisplayImage& image, double dpi, const Metadata& metadata);
 void encode_tiff(ByteSink& sink, const DisplayImage& image, double dpi, const Metadata& metadata);
 void encode_exr(ByteSink& sink, const ChannelImage& image, double dpi, const Metadata& metadata);
+
+/// Lets `encode` write a file that appears whole or not at all. Throws OutputError.
+void write_whole(const std::filesystem::path& file, const std::function<void(ByteSink&)>& encode);
+
+/// A PNG as it would be in a file.
+std::string png_bytes(const DisplayImage& image, double dpi);
 
 bool is_opaque(const DisplayImage& image);
 

@@ -4,6 +4,7 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <optional>
 #include <tuple>
 #include <utility>
 
@@ -110,11 +111,8 @@ class Chainer {
     std::vector<std::uint8_t> chain_used_;
 };
 
-Chainer::Chainer(std::span<const Segment> segments, float spacing) {
-    segments_.reserve(segments.size());
-    for (const Segment& segment : segments) {
-        if (segment.a != segment.b) segments_.push_back(segment);
-    }
+Chainer::Chainer(std::span<const Segment> segments, float spacing)
+    : segments_(segments.begin(), segments.end()) {
     sort(spacing);
     split_at_ends_within(spacing);
     number_ends();
@@ -152,7 +150,29 @@ void Chainer::sort(float spacing) {
     segments_ = std::move(sorted);
 }
 
-/// Where a line ends on another one of its cell, cuts that one in two, so that they share a vertex.
+/// What the line is beyond the place where another one ends on it.
+void take_sides_at_b(Segment& line) {
+    line.type = line.type_at_b;
+    line.left = line.left_at_b;
+    line.right = line.right_at_b;
+    line.left_in_front = line.left_in_front_at_b;
+}
+
+/// Cuts the line, at a place on it, into two that share that vertex; nothing if it is an end.
+std::optional<Segment> cut(Segment& line, Vec2f point) {
+    if (line.a == point) take_sides_at_b(line);
+    if (line.a == point || line.b == point) return std::nullopt;
+    Segment rest = line;
+    take_sides_at_b(rest);
+    line.b = rest.a = point;
+    line.type_at_b = line.type;
+    line.left_at_b = line.left;
+    line.right_at_b = line.right;
+    line.left_in_front_at_b = line.left_in_front;
+    return rest;
+}
+
+/// Where a line ends on another one of its cell, cuts that one.
 void Chainer::split_at_ends_within(float spacing) {
     constexpr float kOnLine = 1e-3F;  // of the spacing: rounding, with much to spare
     std::vector<Segment> split;
@@ -166,28 +186,17 @@ void Chainer::split_at_ends_within(float spacing) {
         for (std::size_t k = begin; k < end; ++k) {
             if (segments_[k].spans_cell) continue;
             const Vec2f point = segments_[k].b;
-            for (std::size_t n = first; n < split.size(); ++n) {
-                Segment& line = split[n];
+            const auto passes = [&](const Segment& line) {
                 const float around = distance(line.a, point) + distance(point, line.b);
-                if (!line.spans_cell || line.a == point || line.b == point ||
-                    around > distance(line.a, line.b) + kOnLine * spacing) {
-                    continue;
-                }
-                Segment rest = line;
-                rest.type = line.type_at_b;
-                rest.left = line.left_at_b;
-                rest.right = line.right_at_b;
-                rest.left_in_front = line.left_in_front_at_b;
-                line.b = rest.a = point;
-                line.type_at_b = line.type;
-                line.left_at_b = line.left;
-                line.right_at_b = line.right;
-                line.left_in_front_at_b = line.left_in_front;
-                split.push_back(rest);
-                break;
-            }
+                return line.spans_cell && around <= distance(line.a, line.b) + kOnLine * spacing;
+            };
+            const auto line = std::find_if(split.begin() + static_cast<std::ptrdiff_t>(first),
+                                           split.end(), passes);
+            if (line == split.end()) continue;
+            if (const auto rest = cut(*line, point)) split.push_back(*rest);
         }
     }
+    std::erase_if(split, [](const Segment& segment) { return segment.a == segment.b; });
     segments_ = std::move(split);
 }
 
@@ -223,7 +232,7 @@ Way Chainer::next_in_chain(Way way) const {
 /// Where a surface bends away just before it meets another, the type is decided by little and
 /// crossings in turn come out one way and the other. A stretch shorter than this, in pixels, takes
 /// the type of what it lies in or next to.
-constexpr float kShortestStretch = 3.0F;
+constexpr float kShortestStretch = 5.0F;
 
 /// Gives the short stretches of one type along a line, from junction to junction, the type of the
 /// longer one beside them.

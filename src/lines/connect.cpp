@@ -19,12 +19,13 @@ float distance_squared(Vec2f a, Vec2f b) {
     return d.x * d.x + d.y * d.y;
 }
 
-Vec2f nearest_on_segment(Vec2f p, Vec2f a, Vec2f b) {
+/// Not quite the ends: where a line ends on another one, that one goes on to both sides.
+Vec2f nearest_within(Vec2f p, Vec2f a, Vec2f b) {
     const Vec2f d = b - a;
     const float squared = d.x * d.x + d.y * d.y;
     if (squared == 0.0F) return a;
     const float s = ((p.x - a.x) * d.x + (p.y - a.y) * d.y) / squared;
-    return a + d * std::clamp(s, 0.0F, 1.0F);
+    return a + d * std::clamp(s, 0.02F, 0.98F);
 }
 
 }  // namespace
@@ -131,7 +132,7 @@ void Connector::join_junction(std::vector<Segment>& segments) {
         Vec2f end;
         float least = std::numeric_limits<float>::max();
         for (std::size_t k = first_segment_; k < segments.size(); ++k) {
-            const Vec2f foot = nearest_on_segment(from, segments[k].a, segments[k].b);
+            const Vec2f foot = nearest_within(from, segments[k].a, segments[k].b);
             if (distance_squared(from, foot) >= least) continue;
             least = distance_squared(from, foot);
             end = foot;
@@ -149,7 +150,7 @@ void Connector::join_junction(std::vector<Segment>& segments) {
         segments.push_back(make_segment(ports_[0], ports_[1]));
         const Segment through = segments.back();
         segments.push_back(make_segment(
-            ports_[2], nearest_on_segment(ports_[2].crossing->point, through.a, through.b)));
+            ports_[2], nearest_within(ports_[2].crossing->point, through.a, through.b)));
         return;
     }
     Vec2f middle;

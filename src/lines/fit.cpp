@@ -90,6 +90,11 @@ void CurveFitter::take(std::span<const Vec2f> points, bool closed,
     if (closed) knots_.push_back(knots_.front());
     for (const std::size_t cut : cuts) knots_[cut].cut = true;
     if (!closed) knots_.front().corner = knots_.back().corner = true;
+    double total = 0.0;
+    for (std::size_t k = 1; k < knots_.size(); ++k) {
+        total += distance(knots_[k - 1].point, knots_[k].point);
+    }
+    mean_step_ = total / static_cast<double>(knots_.size() - 1);
 }
 
 /// The next knot that way, or kNowhere beyond the end of the line or a corner.
@@ -113,7 +118,10 @@ std::optional<Parabola> CurveFitter::side(std::size_t at, int direction) const {
         points[count++] = {s, point};
         if (count > 1 && knots_[k].corner) break;
     }
-    if (count < 2 || s == 0.0) return std::nullopt;
+    // Two crossings may lie next to each other, and then their error is all that they show.
+    if (count < 3 || s < 1.5 * mean_step_) return std::nullopt;
+    // Nor do three show a curvature.
+    if (count == 3) return fit_parabola(std::array{points[0], points[2]});
     return fit_parabola({points.data(), count});
 }
 
@@ -153,6 +161,9 @@ CurveFitter::Corner CurveFitter::corner_between(std::size_t from, std::size_t to
     const double angle = std::atan2(cross(in, out), dot(in, out));
     const double gap = distance(knots_[from].point, knots_[to].point);
     corner.excess = std::abs(angle - 0.5 * gap * (after->curvature() - before->curvature()));
+    // On a circle of a pixel or two the curvature explains the turn only roughly.
+    constexpr double kUnexplained = 0.6;
+    if (corner.excess < kUnexplained * std::abs(angle)) corner.excess = 0.0;
     // Where the two tangents meet, if that is between the knots.
     const double sine = cross(in, out);
     const Vec2d across = after->point - before->point;
@@ -162,6 +173,31 @@ CurveFitter::Corner CurveFitter::corner_between(std::size_t from, std::size_t to
         corner.point = before->point + in * ahead;
     }
     return corner;
+}
+
+/// Windows that reach over a corner see something of it, too: drops what is near a sharper one.
+void CurveFitter::keep_sharpest(std::vector<Corner>& corners) {
+    constexpr std::size_t kSame = 2;  // knots, between which there is one corner at most
+    constexpr double kEcho = 0.5;     // of the sharper one, within reach of its windows
+    std::vector<Corner> kept;
+    for (std::size_t k = 0; k < corners.size(); ++k) {
+        const auto yields_to = [&](const Corner& other) {
+            const std::size_t apart = other.after > corners[k].after
+                                          ? other.after - corners[k].after
+                                          : corners[k].after - other.after;
+            const bool sharper = other.excess > corners[k].excess;
+            return sharper && (apart <= kSame ||
+                               (apart <= kReach + 1 && corners[k].excess < kEcho * other.excess));
+        };
+        const auto begin = corners.begin() + static_cast<std::ptrdiff_t>(k);
+        const auto before = std::min<std::size_t>(k, kReach + 1);
+        const auto after = std::min<std::size_t>(corners.size() - k, kReach + 2);
+        if (std::none_of(begin - static_cast<std::ptrdiff_t>(before),
+                         begin + static_cast<std::ptrdiff_t>(after), yields_to)) {
+            kept.push_back(corners[k]);
+        }
+    }
+    corners = std::move(kept);
 }
 
 void CurveFitter::find_corners() {
@@ -180,14 +216,9 @@ void CurveFitter::find_corners() {
         } else if (!knots_[k + 1].cut) {
             corner = corner_between(k, k + 1);
         }
-        if (!(corner.excess > least)) continue;
-        // Windows that reach over a corner measure something, too; the corner itself most.
-        if (!corners.empty() && corners.back().after + 2 >= corner.after) {
-            if (corner.excess > corners.back().excess) corners.back() = corner;
-            continue;
-        }
-        corners.push_back(corner);
+        if (corner.excess > least) corners.push_back(corner);
     }
+    keep_sharpest(corners);
     if (corners.empty()) return;
     add_corners(corners);
     start_at_corner();
@@ -310,14 +341,16 @@ bool CurveFitter::fit_piece(const Span& span, double tolerance, CurvePiece& piec
     }
     for (double& u : parameters_) u /= arc > 0.0 ? arc : 1.0;
 
-    constexpr int kMostSteps = 6;
-    constexpr double kHopeless = 5.0;  // times the tolerance, after two steps
+    constexpr int kMostSteps = 24;
     Controls controls = solve(span, arc);
     double error = project(span, controls);
-    for (int k = 0; k < kMostSteps; ++k) {
-        if (k > 0 && (error <= tolerance || (k > 1 && error > kHopeless * tolerance))) break;
+    for (int k = 1; k <= kMostSteps; ++k) {
+        const double before = error;
         controls = solve(span, arc);
         error = project(span, controls);
+        if (error <= tolerance) break;
+        // At the rate of the last step, will the rest of them do?
+        if (error * std::pow(error / before, kMostSteps - k) > tolerance) break;
     }
     piece = {to_float(controls.first), to_float(controls.second),
              to_float(knots_[span.last].point)};

@@ -68,6 +68,7 @@ class CurveFitter {
     void take(std::span<const Vec2f> points, bool closed, std::span<const std::size_t> cuts);
     void find_corners();
     Corner corner_between(std::size_t from, std::size_t to) const;
+    static void keep_sharpest(std::vector<Corner>& corners);
     void add_corners(std::span<const Corner> corners);
     void start_at_corner();
     std::optional<Parabola> side(std::size_t at, int direction) const;
@@ -85,6 +86,7 @@ class CurveFitter {
 
     FitSettings settings_;
     bool closed_ = false;
+    double mean_step_ = 0.0;          ///< between points, pixels
     std::vector<Knot> knots_;         ///< closed: the first comes again as the last
     std::vector<double> parameters_;  ///< of the points of the piece at hand, in [0, 1]
     std::vector<std::size_t> ends_, best_ends_;

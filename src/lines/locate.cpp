@@ -346,6 +346,7 @@ bool Locator::classify_foreseen(const Interval& interval, Crossing& crossing) co
         p.kind == Kind::first_limb || (p.kind != Kind::second_limb && a.t <= b.t);
     crossing.point = interval.a + (interval.b - interval.a) * p.at;
     crossing.nearer = a_in_front ? a.id : b.id;
+    crossing.first_in_front = a_in_front;
     crossing.t = p.t;
     const bool one_id = a.id == b.id;
     if (p.kind != Kind::seam) {

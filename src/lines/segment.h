@@ -19,7 +19,7 @@ struct Segment {
     /// lines within one geometry.
     GeometryId left = kBackground, right = kBackground;
     GeometryId owner = kBackground;  ///< the geometry whose line it is: the nearer of the two
-    bool left_in_front = true;  ///< which side is nearer to the viewer
+    bool left_in_front = true;       ///< which side is nearer to the viewer
     /// The same as found at b: another line may end on this one, and what is behind it change.
     LineType type_at_b = LineType::silhouette;
     GeometryId left_at_b = kBackground, right_at_b = kBackground;

@@ -11,6 +11,7 @@ namespace ink {
 struct Drawing {
     /// Those of the types that were asked for, and all that divide two geometries. Their order
     /// depends on the tiles; `left_sample` and `right_sample` mean nothing any more.
+    /// `t` is the distance from the eye, or from the camera's plane, as in the AOV Z.
     std::vector<Segment> segments;
     float spacing = 1.0F;  ///< of the lattice, pixels
     /// Corners of the rectangle that was searched, pixels: beyond the picture by what lines reach

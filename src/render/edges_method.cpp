@@ -21,17 +21,9 @@ bool has_object_rules(const Settings& settings) {
 }
 
 LineStyle line_style(const Settings& settings, const Film& film, LineType type, int object) {
-    LineStyle style{static_cast<float>(settings.line_width_px()), film.line_color(), 1.0F};
-    for (const LineRule& rule : settings.line_rules) {
-        if (!rule.applies(type, object)) continue;
-        if (rule.width) {
-            style.width_px =
-                static_cast<float>(rule.width->pixels(settings.dpi, settings.size.height));
-        }
-        if (rule.color) style.color = film.in_blend_space(*rule.color);
-        if (rule.opacity) style.opacity = static_cast<float>(*rule.opacity);
-    }
-    return style;
+    const StrokeStyle style = settings.line_style(type, object);
+    return {static_cast<float>(style.width_px), film.in_blend_space(style.color),
+            static_cast<float>(style.opacity)};
 }
 
 /// Throws UsageError if a rule is for an object that does not exist.
@@ -116,6 +108,8 @@ void keep_lines(const Edges& edges, const std::vector<std::vector<ColoredSegment
             const Segment& segment = line.segment;
             if (segment.left != segment.right || edges.wanted.has(segment.type)) {
                 drawing.segments.push_back(segment);
+                float& t = drawing.segments.back().t;
+                t = edges.pipeline.camera.distance_from_eye(segment.a, t) * edges.pipeline.unit;
             }
         }
     }

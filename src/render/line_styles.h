@@ -25,6 +25,14 @@ struct LineRule {
     }
 };
 
+/// How a line is drawn after all rules.
+struct StrokeStyle {
+    double width_px = 0.0;
+    Rgb8 color;
+    double opacity = 1.0;
+    friend bool operator==(const StrokeStyle&, const StrokeStyle&) = default;
+};
+
 /// The name of a type as users write it.
 std::string_view name_of(LineType type);
 /// Throws UsageError for a name that is none.

@@ -34,6 +34,7 @@ struct Pipeline {
           frame(scene_tracer.frame(camera.projection(), all.threads)),
           shader(scene, camera, all.shading),
           ids(scene, all.ids),
+          unit(static_cast<float>(scene.frame().unit)),
           film(target),
           lines(line_output) {
         if (!all.aovs.empty()) aovs.emplace(scene, camera, all.aovs, locates(), target);
@@ -53,6 +54,7 @@ struct Pipeline {
     std::unique_ptr<FrameTracer> frame;
     Shader shader;
     LineIds ids;
+    float unit;  ///< length of the scene's unit in those of the file
     Film& film;
     LineOutput lines;
     std::optional<AovWriter> aovs;

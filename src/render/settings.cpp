@@ -150,6 +150,7 @@ const Words<ShadeMode> kShadeModes{{{"lambert", ShadeMode::lambert},
                                     {"toon", ShadeMode::toon},
                                     {"flat", ShadeMode::flat},
                                     {"none", ShadeMode::none}}};
+const Words<Fill> kFills{{{"none", Fill::none}, {"flat", Fill::flat}, {"image", Fill::image}}};
 const Words<LineBlend> kBlends{{{"auto", LineBlend::automatic},
                                 {"display", LineBlend::display},
                                 {"linear", LineBlend::linear}}};
@@ -392,6 +393,21 @@ std::vector<Setting> make_table() {
          [](S& s, Text t) { s.aa = t.empty() ? std::nullopt : std::optional(read_aa(t)); },
          [](const S& s) { return s.aa ? print(*s.aa) : std::string(); }},
 
+        {"fill", "Curves", "WHAT",
+         "What SVG and PDF show below the lines: flat (each geometry filled with one colour), "
+         "image "
+         "(the shaded picture, embedded) or none",
+         [](S& s, Text t) { s.fill = kFills.read(t); },
+         [](const S& s) { return kFills.print(s.fill); }},
+        {"curve-tolerance", "Curves", "PX",
+         "Pixels by which a curve may miss the points that it was fitted to",
+         [](S& s, Text t) { s.curve_tolerance_px = read_number(t, 0.01, 10); },
+         [](const S& s) { return fmt::format("{}", s.curve_tolerance_px); }},
+        {"min-length", "Curves", "LEN",
+         "Leave out lines that are shorter, from junction to junction",
+         [](S& s, Text t) { s.min_length = read_length(t, true); },
+         [](const S& s) { return print(s.min_length); }},
+
         {"threads", "Run", "T", "Threads to use; 0 for all. The picture does not depend on it",
          [](S& s, Text t) { s.threads = read_int(t, 0, 1024); },
          [](const S& s) { return fmt::format("{}", s.threads); }},
@@ -471,6 +487,17 @@ void check_memory(const Settings& settings, int color_bytes) {
 }
 
 }  // namespace
+
+StrokeStyle Settings::line_style(LineType type, int object) const {
+    StrokeStyle style{line_width_px(), line_color, 1.0};
+    for (const LineRule& rule : line_rules) {
+        if (!rule.applies(type, object)) continue;
+        if (rule.width) style.width_px = rule.width->pixels(dpi, size.height);
+        style.color = rule.color.value_or(style.color);
+        style.opacity = rule.opacity.value_or(style.opacity);
+    }
+    return style;
+}
 
 Metric Settings::profile() const {
     const Metric own{method == Method::edges ? Metric::Kind::solid : Metric::Kind::linear};

@@ -40,6 +40,13 @@ enum class Aov : std::uint8_t { id, depth, normal, position, lines };
 
 inline constexpr int kMostLatticePoints = 4;  ///< along a pixel's side
 
+/// What SVG and PDF show below the lines.
+enum class Fill : std::uint8_t {
+    none,
+    flat,  ///< each geometry filled with one colour
+    image  ///< the shaded picture, embedded
+};
+
 enum class LineBlend : std::uint8_t { automatic, display, linear };
 
 /// Everything that decides what a picture looks like. settings_table() is the way in for text.
@@ -76,11 +83,18 @@ struct Settings {
     std::optional<AntiAliasing> aa;  ///< default: the method's own, see smoothing()
     std::vector<Aov> aovs;
 
+    // Lines as curves: SVG, PDF and JSON.
+    Fill fill = Fill::flat;
+    double curve_tolerance_px = 0.1;
+    Length min_length{0.0, Length::Unit::px};
+
     int threads = 0;
     int tile = 64;
 
     double line_width_px() const { return line_width.pixels(dpi, size.height); }
     double ridge_scale_px() const { return ridge_scale.pixels(dpi, size.height); }
+    /// How lines of a type are drawn that belong to an object, counted from 1.
+    StrokeStyle line_style(LineType type, int object) const;
     bool draws_lines() const { return compose != Compose::shaded && !lines.empty(); }
     /// The metric that is set, or else the method's own.
     Metric profile() const;

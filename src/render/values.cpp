@@ -53,7 +53,7 @@ Rgb8 read_color(std::string_view text) {
     return *color;
 }
 
-Length read_length(std::string_view text) {
+Length read_length(std::string_view text, bool zero_allowed) {
     Length length;
     std::string_view number = trim(text);
     for (std::size_t unit = 0; unit < kUnitNames.size(); ++unit) {
@@ -63,10 +63,11 @@ Length read_length(std::string_view text) {
         break;
     }
     const auto value = parse_double(number);
-    if (!value || !(*value > 0.0) || !std::isfinite(*value)) {
+    const bool is_length = value && std::isfinite(*value) && *value >= 0.0;
+    if (!is_length || (*value == 0.0 && !zero_allowed)) {
         throw UsageError(fmt::format(
-            "'{}' is not a width; write a positive number with px, pt, mm or %, as in 2px or 0.5pt",
-            text));
+            "'{}' is not a {}; write a positive number with px, pt, mm or %, as in 2px or 0.5pt",
+            text, zero_allowed ? "length" : "width"));
     }
     length.value = *value;
     return length;

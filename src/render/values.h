@@ -24,7 +24,7 @@ struct Length {
 double read_number(std::string_view text, double least, double most);
 int read_int(std::string_view text, int least, int most);
 Rgb8 read_color(std::string_view text);
-Length read_length(std::string_view text);
+Length read_length(std::string_view text, bool zero_allowed = false);
 
 /// In the form that read_length reads.
 std::string print(const Length& length);

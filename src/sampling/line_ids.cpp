@@ -59,16 +59,16 @@ void LineIds::add(const Object& object, IdLevel level, GeometryId& next) {
     if (const Groups* own_groups = groups(object, level)) {
         const bool shared = continues && objects_.back().groups != nullptr;
         const GeometryId first = shared ? objects_.back().first : next;
-        objects_.push_back({first, 0, own_groups});
+        objects_.push_back({first, 0, own_groups, false, level});
         next = std::max(next, first + *std::ranges::max_element(*own_groups) + 1);
     } else if (continues && level != IdLevel::primitive && objects_.back().stride == 0) {
-        objects_.push_back({objects_.back().first, 0, nullptr});
+        objects_.push_back({objects_.back().first, 0, nullptr, false, IdLevel::object});
     } else if (level == IdLevel::primitive) {
         const bool ball = std::holds_alternative<Spheres>(object.shape);
         objects_.push_back({next, 1, nullptr, ball});
         next += static_cast<GeometryId>(object.primitive_count());
     } else {
-        objects_.push_back({next, 0, nullptr});
+        objects_.push_back({next, 0, nullptr, false, IdLevel::object});
         next += 1;
     }
 }

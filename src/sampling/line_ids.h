@@ -28,6 +28,9 @@ class LineIds {
 
     /// Index of the object that an ID belongs to, which must not be the background's.
     std::size_t object_of(GeometryId id) const;
+    /// The first ID of an object of the scene, and at which level its own are told apart.
+    GeometryId first(std::size_t object) const { return objects_[object].first; }
+    IdLevel level(std::size_t object) const { return objects_[object].level; }
 
   private:
     LineIds() = default;
@@ -38,6 +41,7 @@ class LineIds {
         std::uint32_t stride;  ///< 1: every primitive has its own; 0: they share one
         const std::vector<std::uint32_t>* groups = nullptr;  ///< instead: an offset a primitive
         bool ball = false;                                   ///< an ID is one sphere
+        IdLevel level = IdLevel::primitive;
     };
     std::vector<ObjectIds> objects_;
 };

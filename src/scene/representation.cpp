@@ -347,6 +347,7 @@ std::vector<Object> represent(const Molecule& molecule, const DataSettings& sett
     Parts parts = atom_parts(molecule, settings);
     shape.parts = std::move(parts.of_atom);
     object.part_names = std::move(parts.names);
+    object.elements = molecule.elements;
     object.shape = std::move(shape);
     std::vector<Object> objects;
     if (settings.representation == Representation::sticks) object.usual_ids = IdLevel::object;

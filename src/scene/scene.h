@@ -42,6 +42,7 @@ struct Object {
     Shape shape;
     Material material{};
     std::vector<std::string> part_names{};
+    std::vector<std::uint8_t> elements{};  ///< atomic numbers, one an atom; of molecules only
     /// What lines tell apart and find creases by; default: as for the picture.
     std::optional<IdLevel> ids{};
     /// What lines tell apart where neither this object nor the picture says; default: by its kind.

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "base/image.h"
+#include "lines/chain.h"
+#include "lines/fit.h"
+#include "vector/line_art.h"
+
+namespace ink {
+
+/// One region for each geometry that lines go round, in the order of IDs. Its outlines are the
+/// curves of those lines, and stretches of the border of the searched rectangle where it is cut off
+/// there. Neighbours therefore share their curves exactly. Colours are left open.
+std::vector<Region> make_regions(const ChainGraph& graph, std::span<const Curve> curves,
+                                 Vec2f lower, Vec2f upper);
+
+/// Gives each region the mean of the pixels whose centres it covers, taken in linear light; one
+/// that covers none, that of the nearest pixel.
+void color_regions(std::span<Region> regions, const DisplayImage& image, int threads);
+
+}  // namespace ink

@@ -1,0 +1,214 @@
+#include "vector/svg_writer.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <iterator>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "io/image_writers.h"
+#include "vector/xml_text.h"
+
+namespace ink {
+
+namespace {
+
+/// Two decimals: a twentieth of the default tolerance at most is lost.
+void append_number(std::string& text, float value) {
+    auto hundredths = static_cast<std::int64_t>(std::llround(value * 100.0F));
+    if (hundredths < 0) {
+        text += '-';
+        hundredths = -hundredths;
+    }
+    fmt::format_to(std::back_inserter(text), "{}", hundredths / 100);
+    const auto rest = static_cast<int>(hundredths % 100);
+    if (rest == 0) return;
+    text += '.';
+    text += static_cast<char>('0' + rest / 10);
+    if (rest % 10 != 0) text += static_cast<char>('0' + rest % 10);
+}
+
+void append_point(std::string& text, char command, Vec2f point) {
+    text += command;
+    append_number(text, point.x);
+    text += ',';
+    append_number(text, point.y);
+}
+
+void append_curve(std::string& text, const Curve& curve, bool closed) {
+    append_point(text, 'M', curve.start);
+    for (const CurvePiece& piece : curve.pieces) {
+        if (piece.straight) {
+            append_point(text, 'L', piece.end);
+            continue;
+        }
+        append_point(text, 'C', piece.control1);
+        append_point(text, ' ', piece.control2);
+        append_point(text, ' ', piece.end);
+    }
+    if (closed) text += 'Z';
+}
+
+std::string base64(std::string_view bytes) {
+    constexpr std::string_view kDigits =
+        "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    std::string text;
+    text.reserve((bytes.size() + 2) / 3 * 4);
+    for (std::size_t k = 0; k < bytes.size(); k += 3) {
+        std::uint32_t group = 0;
+        for (std::size_t n = 0; n < 3; ++n) {
+            group <<= 8U;
+            if (k + n < bytes.size()) group |= static_cast<unsigned char>(bytes[k + n]);
+        }
+        for (std::size_t n = 0; n < 4; ++n) {
+            const bool padding = k + n > bytes.size();
+            text += padding ? '=' : kDigits[group >> (18U - 6U * n) & 63U];
+        }
+    }
+    return text;
+}
+
+class SvgText {
+  public:
+    explicit SvgText(const LineArt& art) : art_(art) {}
+
+    std::string document();
+
+  private:
+    template <class... Args>
+    void add(fmt::format_string<Args...> format, Args&&... args) {
+        fmt::format_to(std::back_inserter(text_), format, std::forward<Args>(args)...);
+    }
+    void add_head();
+    void add_paper();
+    void add_regions();
+    void add_lines();
+    void add_layer(LineType type);
+    void add_line(std::size_t k, const StrokeStyle& usual);
+    void add_style(const StrokeStyle& style);
+    void add_names(GeometryId id);
+
+    const LineArt& art_;
+    std::string text_;
+};
+
+void SvgText::add_head() {
+    const double mm_per_px = 25.4 / art_.dpi;
+    text_ += "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n";
+    add("<svg xmlns=\"http://www.w3.org/2000/svg\" xmlns:xlink=\"http://www.w3.org/1999/xlink\" "
+        "xmlns:inkscape=\"http://www.inkscape.org/namespaces/inkscape\" version=\"1.1\" "
+        "width=\"{:.4f}mm\" height=\"{:.4f}mm\" viewBox=\"0 0 {} {}\">\n",
+        art_.size.width * mm_per_px, art_.size.height * mm_per_px, art_.size.width,
+        art_.size.height);
+    add("<title>{}</title>\n", xml_text(art_.title));
+    add("<desc>Feature lines of {}, as curves</desc>\n", xml_text(art_.title));
+    text_ += "<metadata>\n";
+    for (const auto& [key, value] : art_.metadata) {
+        add("<entry xmlns=\"urn:inktrace\" name=\"{}\">{}</entry>\n", xml_text(key),
+            xml_text(value));
+    }
+    text_ += "</metadata>\n";
+}
+
+void SvgText::add_paper() {
+    if (art_.background) {
+        add("<rect id=\"background\" width=\"{}\" height=\"{}\" fill=\"{}\"/>\n", art_.size.width,
+            art_.size.height, to_string(*art_.background));
+    }
+    if (!art_.image) return;
+    add("<image id=\"shading\" width=\"{}\" height=\"{}\" xlink:href=\"data:image/png;base64,",
+        art_.size.width, art_.size.height);
+    text_ += base64(png_bytes(*art_.image, art_.dpi));
+    text_ += "\"/>\n";
+}
+
+/// Classes and data- attributes that say what is shown.
+void SvgText::add_names(GeometryId id) {
+    const GeometryName name = art_.names(id);
+    std::string classes = class_name("object-", name.object);
+    if (!name.part.empty()) classes.append(class_name(" part-", name.part));
+    if (!name.element.empty()) classes.append(class_name(" element-", name.element));
+    add(" class=\"{}\" data-object=\"{}\"", classes, xml_text(name.object));
+    if (!name.part.empty()) add(" data-part=\"{}\"", xml_text(name.part));
+    if (!name.element.empty()) add(" data-element=\"{}\"", xml_text(name.element));
+    if (name.index) add(" data-index=\"{}\"", *name.index + 1);
+}
+
+void SvgText::add_regions() {
+    if (art_.regions.empty()) return;
+    add("<g id=\"regions\" inkscape:groupmode=\"layer\" inkscape:label=\"regions\" "
+        "fill-rule=\"evenodd\" stroke-width=\"{}\" stroke-linejoin=\"round\">\n",
+        kUnderlapPx);
+    for (const Region& region : art_.regions) {
+        text_ += "<path";
+        add_names(region.id);
+        add(" fill=\"{0}\" stroke=\"{0}\" d=\"", to_string(region.color));
+        for (const Curve& outline : region.outlines) append_curve(text_, outline, true);
+        text_ += "\"/>\n";
+    }
+    text_ += "</g>\n";
+}
+
+void SvgText::add_style(const StrokeStyle& style) {
+    add(" stroke=\"{}\" stroke-width=\"{:.4g}\"", to_string(style.color), style.width_px);
+}
+
+/// A group whose style is that of its first line; others of another style say so themselves.
+void SvgText::add_layer(LineType type) {
+    const auto first = std::ranges::find(art_.chains, type, &Chain::type);
+    if (first == art_.chains.end()) return;
+    const StrokeStyle& usual = art_.styles[static_cast<std::size_t>(first - art_.chains.begin())];
+    add("<g id=\"{0}\" class=\"{0}\" inkscape:groupmode=\"layer\" inkscape:label=\"{0}\"",
+        name_of(type));
+    add_style(usual);
+    text_ += ">\n";
+    for (std::size_t k = 0; k < art_.chains.size(); ++k) {
+        if (art_.chains[k].type == type) add_line(k, usual);
+    }
+    text_ += "</g>\n";
+}
+
+void SvgText::add_line(std::size_t k, const StrokeStyle& usual) {
+    const Chain& chain = art_.chains[k];
+    text_ += "<path";
+    add_names(front(chain));
+    if (behind(chain) != front(chain) && behind(chain) != kBackground) {
+        add(" data-behind=\"{}\"", xml_text(art_.names(behind(chain)).label()));
+    }
+    const StrokeStyle& style = art_.styles[k];
+    if (style.color != usual.color || style.width_px != usual.width_px) add_style(style);
+    const double opacity = style.opacity * static_cast<double>(chain.strength);
+    if (opacity < 0.995) add(" stroke-opacity=\"{:.2f}\"", opacity);
+    text_ += " d=\"";
+    append_curve(text_, art_.curves[k], chain.closed);
+    text_ += "\"/>\n";
+}
+
+void SvgText::add_lines() {
+    if (art_.chains.empty()) return;
+    text_ += "<g id=\"lines\" fill=\"none\" stroke-linecap=\"round\" stroke-linejoin=\"round\">\n";
+    for (const LineType type : kLayers) add_layer(type);
+    text_ += "</g>\n";
+}
+
+std::string SvgText::document() {
+    add_head();
+    add_paper();
+    add_regions();
+    add_lines();
+    text_ += "</svg>\n";
+    return std::move(text_);
+}
+
+}  // namespace
+
+void write_svg(const std::filesystem::path& file, const LineArt& art) {
+    const std::string text = SvgText(art).document();
+    write_whole(file, [&](ByteSink& sink) { sink.write(text.data(), text.size()); });
+}
+
+}  // namespace ink

@@ -1,0 +1,356 @@
+// Chaining line segments and fitting curves to the chains, on invented lines.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <numbers>
+#include <random>
+#include <vector>
+
+#include "lines/chain.h"
+#include "lines/fit.h"
+#include "lines/fit_chains.h"
+#include "lines/junctions.h"
+
+namespace ink::test {
+namespace {
+
+Segment segment(Vec2f a, Vec2f b, GeometryId left = 1, GeometryId right = 0,
+                LineType type = LineType::silhouette) {
+    Segment made;
+    made.a = a;
+    made.b = b;
+    made.type = made.type_at_b = type;
+    made.left = made.left_at_b = left;
+    made.right = made.right_at_b = right;
+    made.t = 1.0F;
+    made.spans_cell = true;
+    return made;
+}
+
+/// The straight segments between neighbouring points.
+std::vector<Segment> along(const std::vector<Vec2f>& points, bool closed) {
+    std::vector<Segment> segments;
+    for (std::size_t k = 0; k + 1 < points.size(); ++k) {
+        segments.push_back(segment(points[k], points[k + 1]));
+    }
+    if (closed) segments.push_back(segment(points.back(), points.front()));
+    return segments;
+}
+
+/// Where a curve given by its angle crosses the lattice through pixel centres, in order, with the
+/// error that bisection leaves: crossings are in the middle of the last interval.
+std::vector<Vec2f> crossings(const std::function<Vec2d(double)>& curve, double from, double to,
+                             double interval = 1.0 / 64.0) {
+    std::vector<Vec2f> points;
+    const int steps = 400000;
+    Vec2d last = curve(from);
+    const auto cell = [](double x) { return std::floor(x - 0.5); };
+    const auto snap = [&](double x) {
+        return (std::floor((x - 0.5) / interval) + 0.5) * interval + 0.5;
+    };
+    for (int k = 1; k <= steps; ++k) {
+        const Vec2d next = curve(from + (to - from) * k / steps);
+        if (cell(next.x) != cell(last.x)) {
+            const double x = std::max(cell(next.x), cell(last.x)) + 0.5;
+            points.push_back(to_float(Vec2d{x, snap(next.y)}));
+        } else if (cell(next.y) != cell(last.y)) {
+            const double y = std::max(cell(next.y), cell(last.y)) + 0.5;
+            points.push_back(to_float(Vec2d{snap(next.x), y}));
+        }
+        last = next;
+    }
+    return points;
+}
+
+std::function<Vec2d(double)> ellipse(Vec2d centre, double a, double b) {
+    return [=](double angle) { return centre + Vec2d{a * std::cos(angle), b * std::sin(angle)}; };
+}
+
+constexpr double kTurn = 2.0 * std::numbers::pi;
+
+Vec2d on_curve(Vec2f start, const CurvePiece& piece, double u) {
+    const double v = 1.0 - u;
+    return to_double(start) * (v * v * v) + to_double(piece.control1) * (3 * u * v * v) +
+           to_double(piece.control2) * (3 * u * u * v) + to_double(piece.end) * (u * u * u);
+}
+
+std::vector<Vec2d> sampled(const Curve& curve, int steps = 64) {
+    std::vector<Vec2d> points{to_double(curve.start)};
+    Vec2f at = curve.start;
+    for (const CurvePiece& piece : curve.pieces) {
+        for (int k = 1; k <= steps; ++k) {
+            points.push_back(on_curve(at, piece, static_cast<double>(k) / steps));
+        }
+        at = piece.end;
+    }
+    return points;
+}
+
+std::vector<Curve> fit(const std::vector<Vec2f>& points, bool closed,
+                       std::vector<std::size_t> cuts = {}) {
+    if (cuts.empty()) cuts = {0, closed ? points.size() : points.size() - 1};
+    std::vector<Curve> curves;
+    CurveFitter(FitSettings{}).fit(points, closed, cuts, curves);
+    return curves;
+}
+
+// Chains
+
+TEST(Chains, JoinACirclesSegmentsIntoOneClosedChain) {
+    const std::vector<Vec2f> points = crossings(ellipse({30, 30}, 20, 20), 0.1, 0.1 + kTurn);
+    const ChainGraph graph = chain_segments(along(points, true), 1.0F);
+    ASSERT_EQ(graph.chains.size(), 1U);
+    EXPECT_TRUE(graph.chains[0].closed);
+    EXPECT_EQ(graph.chains[0].points.size(), points.size());
+    EXPECT_EQ(graph.chains[0].points.size(), graph.chains[0].t.size());
+    EXPECT_NEAR(length_of(graph.chains[0]), kTurn * 20.0, 0.5);
+    ASSERT_EQ(graph.paths.size(), 1U);
+    EXPECT_TRUE(graph.paths[0].closed);
+}
+
+TEST(Chains, DoNotDependOnTheOrderOfSegments) {
+    std::vector<Segment> segments = along(crossings(ellipse({30, 30}, 20, 9), 0, kTurn), true);
+    for (const Segment& more : along(crossings(ellipse({70, 40}, 15, 15), 0, 4), false)) {
+        segments.push_back(more);
+    }
+    const ChainGraph expected = chain_segments(segments, 1.0F);
+    std::mt19937 random(7);
+    for (int round = 0; round < 5; ++round) {
+        std::shuffle(segments.begin(), segments.end(), random);
+        const ChainGraph graph = chain_segments(segments, 1.0F);
+        ASSERT_EQ(graph.chains.size(), expected.chains.size());
+        for (std::size_t k = 0; k < graph.chains.size(); ++k) {
+            EXPECT_EQ(graph.chains[k].points, expected.chains[k].points);
+        }
+    }
+}
+
+TEST(Chains, KeepGeometriesOnTheirSidesWhicheverWaySegmentsRun) {
+    const std::vector<Segment> segments{segment({0.5F, 1}, {1.5F, 1}, 5, 6),
+                                        segment({2.5F, 1}, {1.5F, 1}, 6, 5),
+                                        segment({2.5F, 1}, {3.5F, 1}, 5, 6)};
+    const ChainGraph graph = chain_segments(segments, 1.0F);
+    ASSERT_EQ(graph.chains.size(), 1U);
+    const Chain& chain = graph.chains[0];
+    const bool rightwards = chain.points.front().x < chain.points.back().x;
+    EXPECT_EQ(chain.left, rightwards ? 5U : 6U);
+    EXPECT_EQ(chain.right, rightwards ? 6U : 5U);
+}
+
+/// A line from left to right, on which another one ends from below in the third cell.
+std::vector<Segment> tee() {
+    std::vector<Segment> segments;
+    for (int k = 0; k < 6; ++k) {
+        const float x = 0.5F + static_cast<float>(k);
+        segments.push_back(segment({x, 1}, {x + 1, 1}, 1, k < 2 ? 2 : 3));
+    }
+    // The line that goes through knows what is behind it on its two ends.
+    segments[2].right = 2;
+    segments[2].right_at_b = 3;
+    segments.push_back(segment({3, 1.5F}, {3, 1}, 2, 3));
+    segments.back().spans_cell = false;
+    segments.push_back(segment({3, 2.5F}, {3, 1.5F}, 2, 3));
+    segments.push_back(segment({3, 3.5F}, {3, 2.5F}, 2, 3));
+    return segments;
+}
+
+TEST(Chains, AreSplitWhereAnotherLineEndsOnThem) {
+    const ChainGraph graph = chain_segments(tee(), 1.0F);
+    ASSERT_EQ(graph.chains.size(), 3U);
+    int at_junction = 0;
+    for (const Chain& chain : graph.chains) {
+        for (const Vec2f end : {chain.points.front(), chain.points.back()}) {
+            at_junction += end == Vec2f{3, 1} ? 1 : 0;
+        }
+        if (chain.left == 1 && chain.right == 2) {
+            EXPECT_LE(std::max(chain.points.front().x, chain.points.back().x), 3.0F);
+        }
+        if (chain.left == 1 && chain.right == 3) {
+            EXPECT_GE(std::min(chain.points.front().x, chain.points.back().x), 3.0F);
+        }
+    }
+    EXPECT_EQ(at_junction, 3);
+}
+
+TEST(Chains, ThatGoOnPastTheEndOfAnotherLineAreOnePath) {
+    const ChainGraph graph = chain_segments(tee(), 1.0F);
+    std::vector<std::size_t> sizes;
+    for (const Path& path : graph.paths) sizes.push_back(path.steps.size());
+    std::ranges::sort(sizes);
+    EXPECT_EQ(sizes, (std::vector<std::size_t>{1, 2}));
+}
+
+TEST(Chains, EndWhereTheTypeChangesForLongerThanALineIsWide) {
+    std::vector<Segment> segments;
+    for (int k = 0; k < 20; ++k) {
+        const float x = 0.5F + static_cast<float>(k);
+        const bool seam = k >= 10 || k == 4;  // one crossing alone is no stretch of its own
+        segments.push_back(segment({x, 1}, {x + 1, 1}, 1, 2,
+                                   seam ? LineType::intersection : LineType::silhouette));
+    }
+    const ChainGraph graph = chain_segments(segments, 1.0F);
+    ASSERT_EQ(graph.chains.size(), 2U);
+    EXPECT_NE(graph.chains[0].type, graph.chains[1].type);
+    EXPECT_EQ(graph.paths.size(), 1U);
+}
+
+TEST(Junctions, MoveToWhereTheirLinesPoint) {
+    // Three straight lines that meet at (10.2, 10.3), joined in the middle of their crossings.
+    const Vec2d meeting{10.2, 10.3};
+    std::vector<Segment> segments;
+    std::vector<Vec2f> entries;
+    GeometryId id = 1;
+    for (const double angle : {0.3, 2.3, 4.4}) {
+        const auto ray = [&](double s) {
+            return meeting + Vec2d{s * std::cos(angle), s * std::sin(angle)};
+        };
+        const std::vector<Vec2f> points = crossings(ray, 0.0, 8.0);
+        for (Segment piece : along(points, false)) {
+            piece.left = piece.left_at_b = id;
+            piece.right = piece.right_at_b = id % 3 + 1;
+            segments.push_back(piece);
+        }
+        entries.push_back(points.front());
+        ++id;
+    }
+    const Vec2f middle = (entries[0] + entries[1] + entries[2]) * (1.0F / 3.0F);
+    ASSERT_GT(length(to_double(middle) - meeting), 0.1);
+    id = 1;
+    for (const Vec2f entry : entries) {
+        segments.push_back(segment(entry, middle, id % 3 + 1, id));
+        segments.back().spans_cell = false;
+        ++id;
+    }
+    ChainGraph graph = chain_segments(segments, 1.0F);
+    place_junctions(graph, 1.0F);
+    ASSERT_EQ(graph.chains.size(), 3U);
+    Vec2f junction{};
+    for (const Chain& chain : graph.chains) {
+        const double front = length(to_double(chain.points.front()) - meeting);
+        const double back = length(to_double(chain.points.back()) - meeting);
+        EXPECT_LT(std::min(front, back), 0.06);
+        const Vec2f end = front < back ? chain.points.front() : chain.points.back();
+        if (junction == Vec2f{}) junction = end;
+        EXPECT_EQ(end, junction);
+    }
+}
+
+// Curves
+
+TEST(Fit, NeedsAtMostSixNodesForAFullCircle) {
+    for (const double radius : {1.7, 3.0, 10.0, 50.0, 200.0, 500.0, 1000.0}) {
+        const Vec2d centre{radius + 3.3, radius + 4.7};
+        const auto curves = fit(crossings(ellipse(centre, radius, radius), 0.2, 0.2 + kTurn), true);
+        ASSERT_EQ(curves.size(), 1U);
+        EXPECT_LE(curves[0].pieces.size(), 6U) << radius;
+        EXPECT_EQ(curves[0].pieces.back().end, curves[0].start);
+        // Between points that are as far apart as the radius, a curve has some freedom.
+        const double tolerance = radius < 2.0 ? 0.2 : 0.11;
+        for (const Vec2d point : sampled(curves[0])) {
+            EXPECT_NEAR(length(point - centre), radius, tolerance) << radius;
+        }
+    }
+}
+
+TEST(Fit, TurnsSmoothlyWhereTwoPiecesMeet) {
+    const auto curves = fit(crossings(ellipse({150, 80}, 140, 60), 0.2, 0.2 + kTurn), true);
+    const std::vector<CurvePiece>& pieces = curves[0].pieces;
+    EXPECT_LE(pieces.size(), 8U);
+    for (std::size_t k = 0; k < pieces.size(); ++k) {
+        const CurvePiece& next = pieces[(k + 1) % pieces.size()];
+        const Vec2d in = to_double(pieces[k].end) - to_double(pieces[k].control2);
+        const Vec2d out = to_double(next.control1) - to_double(pieces[k].end);
+        EXPECT_LT(std::abs(cross(in, out)) / (length(in) * length(out)), 1e-3);
+        EXPECT_GT(dot(in, out), 0.0);
+    }
+}
+
+TEST(Fit, MakesAStraightRunOnePiece) {
+    for (const double angle : {0.0, 0.02, 0.5, 0.785, 1.1, 1.57}) {
+        const auto line = [&](double s) {
+            return Vec2d{3.3 + s * std::cos(angle), 4.1 + s * std::sin(angle)};
+        };
+        const auto curves = fit(crossings(line, 0.0, 300.0), false);
+        ASSERT_EQ(curves.size(), 1U);
+        EXPECT_EQ(curves[0].pieces.size(), 1U) << angle;
+        EXPECT_TRUE(curves[0].pieces[0].straight);
+    }
+}
+
+TEST(Fit, KeepsTheCornersOfPolygons) {
+    const std::vector<Vec2d> corners{{10.2, 10.8}, {90.7, 20.4}, {70.9, 80.3}, {21.1, 61.6}};
+    const auto polygon = [&](double s) {
+        const auto k = static_cast<std::size_t>(s) % corners.size();
+        const double share = s - std::floor(s);
+        return corners[k] * (1.0 - share) + corners[(k + 1) % corners.size()] * share;
+    };
+    const auto curves = fit(crossings(polygon, 0.5, 4.5), true);
+    ASSERT_EQ(curves.size(), 1U);
+    ASSERT_EQ(curves[0].pieces.size(), 4U);
+    for (const CurvePiece& piece : curves[0].pieces) {
+        EXPECT_TRUE(piece.straight);
+        double nearest = 1e9;
+        for (const Vec2d corner : corners) {
+            nearest = std::min(nearest, length(to_double(piece.end) - corner));
+        }
+        EXPECT_LT(nearest, 0.06);
+    }
+}
+
+TEST(Fit, PassesExactlyThroughItsCuts) {
+    const std::vector<Vec2f> points = crossings(ellipse({60, 60}, 50, 30), 0.0, 4.0);
+    const std::vector<std::size_t> cuts{0, 17, 40, points.size() - 1};
+    const auto curves = fit(points, false, cuts);
+    ASSERT_EQ(curves.size(), 3U);
+    for (std::size_t k = 0; k < 3; ++k) {
+        EXPECT_EQ(curves[k].start, points[cuts[k]]);
+        EXPECT_EQ(curves[k].pieces.back().end, points[cuts[k + 1]]);
+    }
+}
+
+TEST(Fit, SmoothsTheErrorOfCrossingsInsteadOfFollowingIt) {
+    const double radius = 80.0;
+    const auto arc = ellipse({100, 100}, radius, radius);
+    const auto curves = fit(crossings(arc, 0.3, 2.3), false);
+    double turned = 0.0;
+    const std::vector<Vec2d> points = sampled(curves[0], 200);
+    for (std::size_t k = 2; k < points.size(); ++k) {
+        const Vec2d in = points[k - 1] - points[k - 2];
+        const Vec2d out = points[k] - points[k - 1];
+        turned += std::abs(std::atan2(cross(in, out), dot(in, out)));
+    }
+    EXPECT_NEAR(turned, 2.0, 0.05);  // any wiggle would turn there and back
+}
+
+TEST(Fit, StandsShortLinesAndRepeatedPoints) {
+    EXPECT_EQ(fit({{1, 1}, {2, 1}}, false)[0].pieces.size(), 1U);
+    EXPECT_EQ(fit({{1, 1}, {1, 1}}, false).size(), 1U);
+    EXPECT_EQ(fit({{1, 1}, {2, 1}, {2, 1}, {3, 1}}, false).size(), 1U);
+    for (const bool closed : {false, true}) {
+        for (const Curve& curve : fit({{1, 1}, {1.4F, 1.5F}, {0.8F, 1.6F}}, closed)) {
+            for (const Vec2d point : sampled(curve)) EXPECT_LT(length(point - Vec2d{1, 1}), 2.0);
+        }
+    }
+    const auto dot = fit({{1, 1}, {2, 1}}, true);
+    ASSERT_EQ(dot.size(), 1U);
+    EXPECT_EQ(dot[0].pieces.back().end, dot[0].start);
+}
+
+TEST(Fit, BackwardsIsTheSameCurve) {
+    const auto curve = fit(crossings(ellipse({60, 60}, 50, 30), 0.0, 4.0), false)[0];
+    const Curve back = reversed(curve);
+    EXPECT_EQ(back.start, curve.pieces.back().end);
+    EXPECT_EQ(back.pieces.back().end, curve.start);
+    std::vector<Vec2d> points = sampled(back);
+    std::ranges::reverse(points);
+    const std::vector<Vec2d> expected = sampled(curve);
+    for (std::size_t k = 0; k < points.size(); ++k) {
+        EXPECT_LT(length(points[k] - expected[k]), 1e-9);
+    }
+}
+
+}  // namespace
+}  // namespace ink::test

@@ -1,0 +1,382 @@
+// Lines as curves: from scenes to SVG, PDF and JSON.
+
+#include <gtest/gtest.h>
+#include <png.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "io/reader.h"
+#include "render/render.h"
+#include "scenes.h"
+#include "test_files.h"
+#include "vector/line_art.h"
+#include "vector/lines_json.h"
+#include "vector/pdf_writer.h"
+#include "vector/svg_writer.h"
+#include "vector/xml_text.h"
+
+namespace ink::test {
+namespace {
+
+struct Drawn {
+    Film film;
+    LineArt art;
+};
+
+Drawn draw(const Scene& scene, const Settings& settings, bool inked = false) {
+    const auto tracer = make_embree_tracer(scene);
+    Drawing drawing;
+    Film film =
+        render(scene, *tracer, settings, {.display = true, .lines = inked}, {}, nullptr, &drawing);
+    LineArt art = make_line_art(scene, settings, drawing, film.display());
+    return {std::move(film), std::move(art)};
+}
+
+Scene acetaminophen() {
+    return Scene(
+        read_file(std::string(INKTRACE_SOURCE_DIR) + "/samples/acetaminophen.xyz").objects);
+}
+
+Settings picture(int side = 512) {
+    Settings settings;
+    settings.size = {side, side};
+    settings.threads = 2;
+    return settings;
+}
+
+std::string svg_of(const LineArt& art) {
+    const TemporaryFolder folder;
+    write_svg(folder.path() / "x.svg", art);
+    return read_bytes(folder.path() / "x.svg");
+}
+
+/// Ends of the chains that meet at each vertex.
+std::map<std::uint32_t, int> degrees(const std::vector<Chain>& chains) {
+    std::map<std::uint32_t, int> degrees;
+    for (const Chain& chain : chains) {
+        if (chain.closed) continue;
+        ++degrees[chain.first_vertex];
+        ++degrees[chain.last_vertex];
+    }
+    return degrees;
+}
+
+double total_length(const std::vector<Chain>& chains) {
+    double sum = 0.0;
+    for (const Chain& chain : chains) sum += length_of(chain);
+    return sum;
+}
+
+TEST(LineArt, OutlinesOfAMoleculeCloseOrEndAtJunctions) {
+    const LineArt art = draw(acetaminophen(), picture(1024)).art;
+    const auto ends = degrees(art.chains);
+    ASSERT_GT(art.chains.size(), 30U);
+    for (const Chain& chain : art.chains) {
+        if (chain.closed) continue;
+        for (const std::uint32_t vertex : {chain.first_vertex, chain.last_vertex}) {
+            EXPECT_GE(ends.at(vertex), 2) << "a line that ends in the open";
+        }
+    }
+}
+
+TEST(LineArt, CurvesMeetExactlyWhereTheirChainsDo) {
+    const LineArt art = draw(acetaminophen(), picture()).art;
+    std::map<std::uint32_t, Vec2f> places;
+    for (std::size_t k = 0; k < art.chains.size(); ++k) {
+        if (art.chains[k].closed) continue;
+        const auto [first, is_new] =
+            places.emplace(art.chains[k].first_vertex, art.curves[k].start);
+        EXPECT_EQ(first->second, art.curves[k].start);
+        const Vec2f end = art.curves[k].pieces.back().end;
+        EXPECT_EQ(places.emplace(art.chains[k].last_vertex, end).first->second, end);
+    }
+}
+
+TEST(LineArt, ASphereIsOneClosedChainOfAtMostSixNodes) {
+    const LineArt art = draw(Scene({sphere_object({{{0, 0, 0}, 1.0F}})}), picture(1024)).art;
+    ASSERT_EQ(art.chains.size(), 1U);
+    EXPECT_TRUE(art.chains[0].closed);
+    EXPECT_LE(art.curves[0].pieces.size(), 6U);
+    EXPECT_EQ(front(art.chains[0]), 1U);
+    EXPECT_EQ(behind(art.chains[0]), kBackground);
+}
+
+TEST(LineArt, HardlyChangesWithTheLattice) {
+    Settings settings = picture(1024);
+    const LineArt coarse = draw(acetaminophen(), settings).art;
+    settings.lattice = 3;
+    const LineArt fine = draw(acetaminophen(), settings).art;
+    const double count = static_cast<double>(coarse.chains.size());
+    EXPECT_NEAR(static_cast<double>(fine.chains.size()) / count, 1.0, 0.02);
+    EXPECT_NEAR(total_length(fine.chains) / total_length(coarse.chains), 1.0, 0.02);
+}
+
+TEST(LineArt, KnowsNamesDepthsAndTheNearerSide) {
+    const LineArt art = draw(acetaminophen(), picture()).art;
+    std::set<std::string> elements;
+    for (const Chain& chain : art.chains) {
+        elements.insert(art.names(front(chain)).element);
+        EXPECT_EQ(art.names(front(chain)).object, art.title);
+        ASSERT_EQ(chain.t.size(), chain.points.size());
+        for (const float t : chain.t) EXPECT_TRUE(t > 1.0F && t < 1000.0F);
+        if (chain.left == kBackground || chain.right == kBackground) {
+            EXPECT_NE(front(chain), kBackground);
+        }
+    }
+    EXPECT_EQ(elements, (std::set<std::string>{"C", "H", "N", "O"}));
+}
+
+TEST(LineArt, LeavesOutWhatIsShorterThanAsked) {
+    Settings settings = picture();
+    const std::size_t all = draw(acetaminophen(), settings).art.chains.size();
+    settings.min_length = {40.0, Length::Unit::px};
+    const LineArt art = draw(acetaminophen(), settings).art;
+    EXPECT_LT(art.chains.size(), all);
+    for (const Chain& chain : art.chains) EXPECT_GE(length_of(chain), 40.0);
+}
+
+TEST(Regions, ShareTheCurvesOfTheLinesAroundThem) {
+    const LineArt art = draw(acetaminophen(), picture()).art;
+    using Corner = std::pair<float, float>;
+    std::map<GeometryId, std::set<Corner>> nodes;
+    for (const Region& region : art.regions) {
+        for (const Curve& outline : region.outlines) {
+            EXPECT_EQ(outline.start, outline.pieces.back().end);
+            for (const CurvePiece& piece : outline.pieces) {
+                nodes[region.id].insert({piece.end.x, piece.end.y});
+            }
+        }
+    }
+    for (std::size_t k = 0; k < art.chains.size(); ++k) {
+        for (const GeometryId id : {art.chains[k].left, art.chains[k].right}) {
+            if (id == kBackground) continue;
+            for (const CurvePiece& piece : art.curves[k].pieces) {
+                EXPECT_TRUE(nodes[id].contains({piece.end.x, piece.end.y}) ||
+                            piece.end == art.curves[k].pieces.back().end);
+            }
+        }
+    }
+}
+
+TEST(Regions, GoOnAlongTheBorderOfThePicture) {
+    // A sphere much larger than the picture, and a small one in front of it.
+    Settings settings = picture(64);
+    settings.view.view = View::front;
+    settings.view.eye = Vec3d{0, 0, 100};
+    settings.view.look_at = Vec3d{0, 0, 0};
+    settings.view.orthographic = 10.0;
+    const Scene scene(
+        {sphere_object({{{-20, 0, 0}, 21.0F}, {{2, 2, 5}, 1.0F}, {{-2, 2, 40}, 1.0F}})});
+    const LineArt art = draw(scene, settings).art;
+    ASSERT_EQ(art.regions.size(), 3U);
+    // By the shoelace formula: all that is left of about the middle, without the small sphere.
+    double area = 0.0;
+    for (const Curve& outline : art.regions[0].outlines) {
+        Vec2f at = outline.start;
+        for (const CurvePiece& piece : outline.pieces) {
+            for (const Vec2f next : {piece.control1, piece.control2, piece.end}) {
+                area -= 0.5 * static_cast<double>(cross(at, next));
+                at = next;
+            }
+        }
+    }
+    EXPECT_GT(area, 0.5 * 64 * 64);
+    EXPECT_LT(area, 0.9 * 80 * 80);
+}
+
+TEST(Files, AreTheSameForAnyThreadsAndTiles) {
+    const Scene scene = acetaminophen();
+    Settings settings = picture(300);
+    const TemporaryFolder folder;
+    std::vector<std::string> expected;
+    for (const int variant : {0, 1, 2}) {
+        settings.threads = variant == 1 ? 5 : 1;
+        settings.tile = variant == 2 ? 20 : 64;
+        const LineArt art = draw(scene, settings).art;
+        write_svg(folder.path() / "x.svg", art);
+        write_pdf(folder.path() / "x.pdf", art);
+        write_lines_json(folder.path() / "x.json", art);
+        std::vector<std::string> files;
+        for (const char* name : {"x.svg", "x.pdf", "x.json"}) {
+            files.push_back(read_bytes(folder.path() / name));
+            EXPECT_GT(files.back().size(), 1000U);
+        }
+        if (variant == 0) expected = files;
+        EXPECT_EQ(files, expected);
+    }
+}
+
+TEST(Svg, OfASmallMoleculeIsSmall) {
+    EXPECT_LT(svg_of(draw(acetaminophen(), picture(1024)).art).size(), 60000U);
+}
+
+TEST(Svg, HasItsSizeOnPaperAndALayerForEachType) {
+    Settings settings = picture(600);
+    settings.dpi = 300.0;
+    const std::string text = svg_of(draw(acetaminophen(), settings).art);
+    EXPECT_NE(text.find("width=\"50.8000mm\" height=\"50.8000mm\" viewBox=\"0 0 600 600\""),
+              std::string::npos);
+    EXPECT_NE(text.find("<g id=\"silhouette\""), std::string::npos);
+    EXPECT_NE(text.find("<g id=\"intersection\""), std::string::npos);
+    EXPECT_NE(text.find("data-element=\"N\""), std::string::npos);
+}
+
+TEST(Svg, CanCarryTheShadedPictureWithoutLines) {
+    Settings settings = picture(64);
+    settings.fill = Fill::image;
+    const std::string text = svg_of(draw(acetaminophen(), settings).art);
+    EXPECT_NE(text.find("<image"), std::string::npos);
+    EXPECT_NE(text.find("data:image/png;base64,iVBORw0KGgo"), std::string::npos);
+    EXPECT_EQ(text.find("id=\"regions\""), std::string::npos);
+    settings.compose = Compose::lines;
+    EXPECT_EQ(svg_of(draw(acetaminophen(), settings).art).find("<image"), std::string::npos);
+}
+
+TEST(Json, HoldsThePolylines) {
+    const LineArt art = draw(acetaminophen(), picture(128)).art;
+    const TemporaryFolder folder;
+    write_lines_json(folder.path() / "x.json", art);
+    const auto json = nlohmann::json::parse(read_bytes(folder.path() / "x.json"));
+    EXPECT_EQ(json["width"], 128);
+    ASSERT_EQ(json["lines"].size(), art.chains.size());
+    for (std::size_t k = 0; k < art.chains.size(); ++k) {
+        const auto& line = json["lines"][k];
+        const Chain& chain = art.chains[k];
+        EXPECT_EQ(line["type"], name_of(chain.type));
+        ASSERT_EQ(line["points"].size(), chain.points.size());
+        EXPECT_NEAR(line["points"][0][0].get<double>(), double{chain.points[0].x}, 1e-3);
+        EXPECT_NEAR(line["points"][0][2].get<double>(), double{chain.t[0]}, 1e-4);
+        const GeometryId id = front(chain);
+        EXPECT_EQ(json["geometries"][std::to_string(id)]["element"], art.names(id).element);
+    }
+}
+
+// Names
+
+const std::string kWildName =
+    "<&\"'>\x01\x1B caf\xC3\xA9 \xF0\x9F\xA7\xAA \xFF\xC3( \xED\xA0\x80 ]]>";
+
+TEST(XmlText, EscapesWhatHasAMeaningAndReplacesWhatMayNotBeThere) {
+    EXPECT_EQ(xml_text("a<b>&\"'"), "a&lt;b&gt;&amp;&quot;&#39;");
+    EXPECT_EQ(xml_text("caf\xC3\xA9"), "caf\xC3\xA9");
+    const std::string bad = "\xEF\xBF\xBD";
+    EXPECT_EQ(xml_text(std::string_view("\0x", 2)), bad + "x");
+    EXPECT_EQ(xml_text("\x1F"), bad);
+    EXPECT_EQ(xml_text("\xC3"), bad);            // cut off
+    EXPECT_EQ(xml_text("\xC0\xAF"), bad + bad);  // overlong
+    EXPECT_EQ(xml_text("\xED\xA0\x80"), bad);    // surrogate
+    EXPECT_EQ(xml_text("\xEF\xBF\xBE"), bad);    // non-character
+    EXPECT_EQ(xml_text("\n"), "&#10;");
+    EXPECT_EQ(class_name("o-", "a b<c>"), "o-a-b-c");
+}
+
+Scene with_wild_name() {
+    std::vector<Object> objects{sphere_object({{{0, 0, 0}, 1.0F}, {{1, 0, 0}, 0.7F}})};
+    objects[0].name = kWildName;
+    return Scene(std::move(objects));
+}
+
+bool has_rsvg() { return std::system("rsvg-convert --version >/dev/null 2>&1") == 0; }
+
+/// Grey values, over white, of a picture that librsvg makes of an SVG.
+std::vector<float> rasterised(const std::string& svg, int side) {
+    const TemporaryFolder folder;
+    const auto file = folder.write("x.svg", svg);
+    const std::string png = (folder.path() / "x.png").string();
+    const std::string command = "rsvg-convert -b white -w " + std::to_string(side) + " -h " +
+                                std::to_string(side) + " '" + file.string() + "' -o '" + png + "'";
+    if (std::system(command.c_str()) != 0) return {};
+    png_image image{};
+    image.version = PNG_IMAGE_VERSION;
+    if (png_image_begin_read_from_file(&image, png.c_str()) == 0) return {};
+    image.format = PNG_FORMAT_RGBA;
+    std::vector<std::uint8_t> bytes(PNG_IMAGE_SIZE(image));
+    png_image_finish_read(&image, nullptr, bytes.data(), 0, nullptr);
+    std::vector<float> values;
+    for (std::size_t k = 0; k < bytes.size(); k += 4) {
+        values.push_back(static_cast<float>(bytes[k + 1]) / 255.0F);
+    }
+    return values;
+}
+
+#define REQUIRE_RSVG() \
+    if (!has_rsvg()) GTEST_SKIP() << "rsvg-convert is not installed (package librsvg2-bin)"
+
+TEST(Svg, IsWellFormedForAnyName) {
+    REQUIRE_RSVG();
+    const LineArt art = draw(with_wild_name(), picture(64)).art;
+    EXPECT_FALSE(rasterised(svg_of(art), 64).empty());
+    const TemporaryFolder folder;
+    write_pdf(folder.path() / "x.pdf", art);
+    write_lines_json(folder.path() / "x.json", art);
+    EXPECT_TRUE(nlohmann::json::accept(read_bytes(folder.path() / "x.json")));
+}
+
+/// Mean absolute difference of the ink of SVG and pixels, both drawn as lines alone.
+double difference_to_pixels(const Scene& scene, int side) {
+    Settings settings = picture(side);
+    settings.compose = Compose::lines;
+    const Drawn drawn = draw(scene, settings, true);
+    const std::vector<float> svg = rasterised(svg_of(drawn.art), side);
+    const auto& pixels = drawn.film.display().pixels;
+    if (svg.size() != pixels.size()) return 1.0;
+    double sum = 0.0;
+    for (std::size_t k = 0; k < svg.size(); ++k) {
+        const double value = static_cast<double>(pixels[k] >> 8U & 255U) / 255.0;
+        sum += std::abs(value - static_cast<double>(svg[k]));
+    }
+    return sum / static_cast<double>(svg.size());
+}
+
+TEST(Svg, LooksLikeThePixels) {
+    REQUIRE_RSVG();
+    EXPECT_LT(difference_to_pixels(acetaminophen(), 512), 0.003);
+    for (const char* name : {"meshes/fandisk.obj", "meshes/stanford-bunny.ply",
+                             "molecules/4hhb.pdb", "meshes/unit_cube.stl"}) {
+        const auto file = data_file(name);
+        if (!std::filesystem::exists(file)) continue;
+        EXPECT_LT(difference_to_pixels(Scene(read_file(file).objects), 1024), 0.01) << name;
+    }
+}
+
+TEST(Regions, LeaveNoGapsBetweenNeighbours) {
+    REQUIRE_RSVG();
+    Settings settings = picture(256);
+    settings.shading.transparent_background = true;
+    Drawn drawn = draw(acetaminophen(), settings);
+    drawn.art.chains.clear();
+    drawn.art.curves.clear();
+    // Black regions on white paper: what shines through between two of them is not black.
+    for (Region& region : drawn.art.regions) region.color = {0, 0, 0};
+    constexpr int kScale = 4;
+    const std::vector<float> values = rasterised(svg_of(drawn.art), 256 * kScale);
+    ASSERT_EQ(values.size(), 256U * kScale * 256U * kScale);
+    const auto& pixels = drawn.film.display().pixels;
+    const auto inside = [&](int x, int y) {
+        for (int k = 0; k < 9; ++k) {
+            const int at = (y + k / 3 - 1) * 256 + x + k % 3 - 1;
+            if (pixels[static_cast<std::size_t>(at)] >> 24U != 255U) return false;
+        }
+        return true;
+    };
+    int checked = 0;
+    for (int y = kScale; y < 255 * kScale; ++y) {
+        for (int x = kScale; x < 255 * kScale; ++x) {
+            if (!inside(x / kScale, y / kScale)) continue;
+            ++checked;
+            ASSERT_LT(values[static_cast<std::size_t>(y * 256 * kScale + x)], 0.01F)
+                << x << ", " << y;
+        }
+    }
+    EXPECT_GT(checked, 100000);
+}
+
+}  // namespace
+}  // namespace ink::test
