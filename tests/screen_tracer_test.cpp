@@ -24,7 +24,7 @@ class Seen {
           clusters_(scene_),
           camera_(scene_, view, size),
           size_(size),
-          frame_(make_screen_tracer(scene_, clusters_, camera_.projection(), 1)),
+          frame_(make_screen_tracer(clusters_, camera_.projection(), 1)),
           oracle_(make_brute_force_tracer(scene_)) {
         EXPECT_TRUE(camera_.projection().sees_all());
     }

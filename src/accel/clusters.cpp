@@ -46,8 +46,30 @@ Bounds3f bounds_of(const Mesh& shape, std::size_t i) {
     return bounds;
 }
 
-template <class Primitives>
-void append(const Primitives& shape, std::uint32_t object, Clusters& all) {
+void put(Points& points, int lane, Vec3f p) {
+    points.x[lane] = p.x;
+    points.y[lane] = p.y;
+    points.z[lane] = p.z;
+}
+
+void put(const Spheres& shape, std::uint32_t i, int lane, SphereLanes& lanes) {
+    put(lanes.centre, lane, shape.spheres[i].centre);
+    lanes.radius[lane] = shape.spheres[i].radius;
+}
+
+void put(const Mesh& shape, std::uint32_t i, int lane, TriangleLanes& lanes) {
+    const auto& [a, b, c] = shape.triangles[i];
+    put(lanes.a, lane, shape.vertices[a]);
+    put(lanes.b, lane, shape.vertices[b]);
+    put(lanes.c, lane, shape.vertices[c]);
+}
+
+constexpr ClusterKind kind_of(const Spheres& /*shape*/) { return ClusterKind::spheres; }
+constexpr ClusterKind kind_of(const Mesh& /*shape*/) { return ClusterKind::triangles; }
+
+template <class Primitives, class PrimitiveLanes>
+void append(const Primitives& shape, std::uint32_t object, std::vector<PrimitiveLanes>& packets,
+            Clusters& all) {
     const std::size_t count = count_of(shape);
     std::vector<std::pair<std::uint64_t, std::uint32_t>> keys(count);
     parallel_ranges(count, kGrain, [&](std::size_t begin, std::size_t end) {
@@ -62,6 +84,8 @@ void append(const Primitives& shape, std::uint32_t object, Clusters& all) {
     const std::size_t clusters = (count + kLanes - 1) / kLanes;
     all.order.resize(first + count);
     all.clusters.resize(first_cluster + clusters);
+    const std::size_t first_packet = packets.size();
+    packets.resize(first_packet + clusters);
     parallel_ranges(clusters, kGrain / kLanes, [&](std::size_t begin, std::size_t end) {
         for (std::size_t c = begin; c < end; ++c) {
             Cluster& cluster = all.clusters[first_cluster + c];
@@ -69,10 +93,14 @@ void append(const Primitives& shape, std::uint32_t object, Clusters& all) {
             const std::size_t to = std::min(from + kLanes, count);
             cluster.object = object;
             cluster.first = static_cast<std::uint32_t>(first + from);
-            cluster.count = static_cast<std::uint32_t>(to - from);
-            for (std::size_t i = from; i < to; ++i) {
+            cluster.packet = static_cast<std::uint32_t>(first_packet + c);
+            cluster.count = static_cast<std::uint8_t>(to - from);
+            cluster.kind = kind_of(shape);
+            for (int lane = 0; lane < kLanes; ++lane) {
+                const std::size_t i = std::min(from + static_cast<std::size_t>(lane), to - 1);
                 all.order[first + i] = keys[i].second;
                 cluster.bounds.add(bounds_of(shape, keys[i].second));
+                put(shape, keys[i].second, lane, packets[first_packet + c]);
             }
         }
     });
@@ -83,8 +111,8 @@ void append(const Primitives& shape, std::uint32_t object, Clusters& all) {
 Clusters::Clusters(const Scene& scene) {
     for (std::uint32_t i = 0; i < scene.objects().size(); ++i) {
         const Shape& shape = scene.objects()[i].shape;
-        if (const auto* spheres = std::get_if<Spheres>(&shape)) append(*spheres, i, *this);
-        if (const auto* mesh = std::get_if<Mesh>(&shape)) append(*mesh, i, *this);
+        if (const auto* balls = std::get_if<Spheres>(&shape)) append(*balls, i, spheres, *this);
+        if (const auto* mesh = std::get_if<Mesh>(&shape)) append(*mesh, i, triangles, *this);
     }
 }
 

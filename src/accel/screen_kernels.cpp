@@ -70,17 +70,17 @@ HWY_INLINE void update_farthest(Front& front) {
     front.window.farthest = hn::GetLane(hn::MaxOfLanes(kFloats, most));
 }
 
-HWY_INLINE void intersect_sphere(float origin_step, float slope_step, const SpherePacket& packet,
-                                 int lane, std::uint32_t winner, Front& front) {
-    const auto u = set(packet.u[lane]);
-    const auto v = set(packet.v[lane]);
-    const auto a = set(packet.a[lane]);
-    const auto b = set(packet.b[lane]);
-    const auto c = set(packet.c[lane]);
-    const auto f = set(packet.f[lane]);
-    const auto x = set(packet.x[lane]);
-    const auto y = set(packet.y[lane]);
-    const auto z = set(packet.z[lane]);
+HWY_INLINE void intersect_sphere(float origin_step, float slope_step, const SphereForm& form,
+                                 std::uint32_t winner, Front& front) {
+    const auto u = set(form.u);
+    const auto v = set(form.v);
+    const auto a = set(form.a);
+    const auto b = set(form.b);
+    const auto c = set(form.c);
+    const auto f = set(form.f);
+    const auto x = set(form.x);
+    const auto y = set(form.y);
+    const auto z = set(form.z);
     const auto origin = set(origin_step);
     const auto slope = set(slope_step);
     bool changed = false;
@@ -106,36 +106,33 @@ void intersect_spheres(float origin_step, float slope_step, const SpherePacket& 
                        std::uint32_t first, Front& front) {
     for (LaneBits lanes = overlap_lanes(packet.bounds, front.window); lanes != 0;
          lanes &= lanes - 1) {
-        const int lane = std::countr_zero(lanes);
-        intersect_sphere(origin_step, slope_step, packet, lane,
-                         first + static_cast<std::uint32_t>(lane), front);
+        const auto lane = static_cast<std::uint32_t>(std::countr_zero(lanes));
+        intersect_sphere(origin_step, slope_step, packet.forms[lane], first + lane, front);
     }
 }
 
 template <class Vector>
-HWY_INLINE Vector edge_value(const TrianglePacket::Edge& edge, int lane, Vector qx, Vector qy) {
-    return hn::Sub(hn::Mul(set(edge.dx[lane]), hn::Sub(qy, set(edge.y[lane]))),
-                   hn::Mul(set(edge.dy[lane]), hn::Sub(qx, set(edge.x[lane]))));
+HWY_INLINE Vector edge_value(const TriangleForm::Edge& edge, Vector qx, Vector qy) {
+    return hn::Sub(hn::Mul(set(edge.dx), hn::Sub(qy, set(edge.y))),
+                   hn::Mul(set(edge.dy), hn::Sub(qx, set(edge.x))));
 }
 
-HWY_INLINE void intersect_triangle(const TrianglePacket& packet, int lane, std::uint32_t winner,
-                                   Front& front) {
+HWY_INLINE void intersect_triangle(const TriangleForm& form, std::uint32_t winner, Front& front) {
     bool changed = false;
     for (int i = 0; i < kLanes; i += kStep) {
         const auto qx = load(front.x, i);
         const auto qy = load(front.y, i);
-        const auto e0 = edge_value(packet.edges[0], lane, qx, qy);
-        const auto e1 = edge_value(packet.edges[1], lane, qx, qy);
-        const auto e2 = edge_value(packet.edges[2], lane, qx, qy);
+        const auto e0 = edge_value(form.edges[0], qx, qy);
+        const auto e1 = edge_value(form.edges[1], qx, qy);
+        const auto e2 = edge_value(form.edges[2], qx, qy);
         const auto covered = hn::Ge(hn::Min(hn::Min(e0, e1), e2), hn::Zero(kFloats));
         if (hn::AllFalse(kFloats, covered)) continue;
-        const auto rise = hn::Add(hn::Mul(set(packet.gx[lane]), hn::Sub(qx, set(packet.u[lane]))),
-                                  hn::Mul(set(packet.gy[lane]), hn::Sub(qy, set(packet.v[lane]))));
-        const auto facing = hn::Add(hn::Add(set(packet.w[lane]), hn::Mul(set(packet.wx[lane]), qx)),
-                                    hn::Mul(set(packet.wy[lane]), qy));
-        const auto plane = hn::Add(set(packet.z[lane]), hn::Div(rise, facing));
-        const auto depth =
-            hn::Min(hn::Max(plane, set(packet.bounds.depth[lane])), set(packet.far[lane]));
+        const auto rise = hn::Add(hn::Mul(set(form.gx), hn::Sub(qx, set(form.u))),
+                                  hn::Mul(set(form.gy), hn::Sub(qy, set(form.v))));
+        const auto facing =
+            hn::Add(hn::Add(set(form.w), hn::Mul(set(form.wx), qx)), hn::Mul(set(form.wy), qy));
+        const auto plane = hn::Add(set(form.z), hn::Div(rise, facing));
+        const auto depth = hn::Min(hn::Max(plane, set(form.near)), set(form.far));
         changed |= keep_nearer(depth, covered, winner, i, front);
     }
     if (changed) update_farthest(front);
@@ -144,8 +141,8 @@ HWY_INLINE void intersect_triangle(const TrianglePacket& packet, int lane, std::
 void intersect_triangles(const TrianglePacket& packet, std::uint32_t first, Front& front) {
     for (LaneBits lanes = overlap_lanes(packet.bounds, front.window); lanes != 0;
          lanes &= lanes - 1) {
-        const int lane = std::countr_zero(lanes);
-        intersect_triangle(packet, lane, first + static_cast<std::uint32_t>(lane), front);
+        const auto lane = static_cast<std::uint32_t>(std::countr_zero(lanes));
+        intersect_triangle(packet.forms[lane], first + lane, front);
     }
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 
 #include "base/multiversion.h"
@@ -15,7 +16,8 @@ constexpr float kSlack = 1e-2F;
 /// Likewise for depths; the scene reaches over 2.
 constexpr float kDepthSlack = 1e-5F;
 
-/// What the loops below need of a projection.
+/// What the loops below need of a projection. They take it by value, so that nothing they write can
+/// change it.
 struct Basis {
     double rx, ry, rz, dx, dy, dz, fx, fy, fz;  ///< right, down, forward
     double sx, sy, sz;                          ///< start
@@ -41,9 +43,18 @@ struct Basis {
           orthographic(p.orthographic()) {}
 };
 
-struct Points {
-    Lanes<float> x, y, z;
-};
+/// A form's numbers, each for sixteen lanes: what vectorised loops can write.
+template <class Form>
+using FormLanes = std::array<Lanes<float>, sizeof(Form) / sizeof(float)>;
+
+template <class Form>
+void transpose(const FormLanes<Form>& lanes, std::array<Form, kLanes>& forms) {
+    for (int i = 0; i < kLanes; ++i) {
+        std::array<float, sizeof(Form) / sizeof(float)> values;
+        for (std::size_t k = 0; k < values.size(); ++k) values[k] = lanes[k][i];
+        forms[static_cast<std::size_t>(i)] = std::bit_cast<Form>(values);
+    }
+}
 
 /// Right, down and forward from the start.
 INKTRACE_INLINE void to_camera(const Basis& basis, const Points& p, int i, double& x, double& y,
@@ -60,8 +71,9 @@ INKTRACE_INLINE void to_camera(const Basis& basis, const Points& p, int i, doubl
 /// (C . D)^2 = (|C|^2 - r^2) |D|^2 for D = (x, y, 1). Taken about its centre,
 /// C.z (C.x, C.y) / (C.z^2 - r^2), nothing cancels.
 INKTRACE_MULTIVERSION
-void prepare_perspective(const Basis& basis, const Points& centres, const Lanes<float>& radii,
-                         SpherePacket& packet) {
+void prepare_perspective(Basis basis, const Points& centres, const Lanes<float>& radii,
+                         BoundsPacket& __restrict bounds, FormLanes<SphereForm>& __restrict form) {
+    auto& [form_u, form_v, form_a, form_b, form_c, form_f, form_x, form_y, form_z] = form;
     const double step = basis.slope_step;
     const double pixels = 1.0 / step;
     for (int i = 0; i < kLanes; ++i) {
@@ -80,26 +92,27 @@ void prepare_perspective(const Basis& basis, const Points& centres, const Lanes<
         const double c = x * x + ahead;
         const double width = r * std::sqrt(c) / ahead * pixels;
         const double height = r * std::sqrt(a) / ahead * pixels;
-        packet.x[i] = static_cast<float>(x);
-        packet.y[i] = static_cast<float>(y);
-        packet.z[i] = static_cast<float>(z);
-        packet.u[i] = static_cast<float>(u);
-        packet.v[i] = static_cast<float>(v);
-        packet.a[i] = static_cast<float>(a * step * step);
-        packet.b[i] = static_cast<float>(-2.0 * x * y * step * step);
-        packet.c[i] = static_cast<float>(c * step * step);
-        packet.f[i] = static_cast<float>(r * r * tangent / ahead);
-        packet.bounds.left[i] = static_cast<float>(u - width) - kSlack;
-        packet.bounds.right[i] = static_cast<float>(u + width) + kSlack;
-        packet.bounds.top[i] = static_cast<float>(v - height) - kSlack;
-        packet.bounds.bottom[i] = static_cast<float>(v + height) + kSlack;
-        packet.bounds.depth[i] = static_cast<float>(z - r) - kDepthSlack;
+        form_x[i] = static_cast<float>(x);
+        form_y[i] = static_cast<float>(y);
+        form_z[i] = static_cast<float>(z);
+        form_u[i] = static_cast<float>(u);
+        form_v[i] = static_cast<float>(v);
+        form_a[i] = static_cast<float>(a * step * step);
+        form_b[i] = static_cast<float>(-2.0 * x * y * step * step);
+        form_c[i] = static_cast<float>(c * step * step);
+        form_f[i] = static_cast<float>(r * r * tangent / ahead);
+        bounds.left[i] = static_cast<float>(u - width) - kSlack;
+        bounds.right[i] = static_cast<float>(u + width) + kSlack;
+        bounds.top[i] = static_cast<float>(v - height) - kSlack;
+        bounds.bottom[i] = static_cast<float>(v + height) + kSlack;
+        bounds.depth[i] = static_cast<float>(z - r) - kDepthSlack;
     }
 }
 
 INKTRACE_MULTIVERSION
-void prepare_orthographic(const Basis& basis, const Points& centres, const Lanes<float>& radii,
-                          SpherePacket& packet) {
+void prepare_orthographic(Basis basis, const Points& centres, const Lanes<float>& radii,
+                          BoundsPacket& __restrict bounds, FormLanes<SphereForm>& __restrict form) {
+    auto& [form_u, form_v, form_a, form_b, form_c, form_f, form_x, form_y, form_z] = form;
     const double step = basis.origin_step;
     const double pixels = 1.0 / step;
     for (int i = 0; i < kLanes; ++i) {
@@ -111,20 +124,20 @@ void prepare_orthographic(const Basis& basis, const Points& centres, const Lanes
         const double u = x * pixels;
         const double v = y * pixels;
         const double radius = r * pixels;
-        packet.x[i] = static_cast<float>(x);
-        packet.y[i] = static_cast<float>(y);
-        packet.z[i] = static_cast<float>(z);
-        packet.u[i] = static_cast<float>(u);
-        packet.v[i] = static_cast<float>(v);
-        packet.a[i] = static_cast<float>(step * step);
-        packet.b[i] = 0.0F;
-        packet.c[i] = static_cast<float>(step * step);
-        packet.f[i] = static_cast<float>(r * r);
-        packet.bounds.left[i] = static_cast<float>(u - radius) - kSlack;
-        packet.bounds.right[i] = static_cast<float>(u + radius) + kSlack;
-        packet.bounds.top[i] = static_cast<float>(v - radius) - kSlack;
-        packet.bounds.bottom[i] = static_cast<float>(v + radius) + kSlack;
-        packet.bounds.depth[i] = static_cast<float>(z - r) - kDepthSlack;
+        form_x[i] = static_cast<float>(x);
+        form_y[i] = static_cast<float>(y);
+        form_z[i] = static_cast<float>(z);
+        form_u[i] = static_cast<float>(u);
+        form_v[i] = static_cast<float>(v);
+        form_a[i] = static_cast<float>(step * step);
+        form_b[i] = 0.0F;
+        form_c[i] = static_cast<float>(step * step);
+        form_f[i] = static_cast<float>(r * r);
+        bounds.left[i] = static_cast<float>(u - radius) - kSlack;
+        bounds.right[i] = static_cast<float>(u + radius) + kSlack;
+        bounds.top[i] = static_cast<float>(v - radius) - kSlack;
+        bounds.bottom[i] = static_cast<float>(v + radius) + kSlack;
+        bounds.depth[i] = static_cast<float>(z - r) - kDepthSlack;
     }
 }
 
@@ -135,7 +148,7 @@ struct Corners {
 };
 
 INKTRACE_MULTIVERSION
-void project(const Basis& basis, const Points& points, Corners& corners) {
+void project(Basis basis, const Points& points, Corners& __restrict corners) {
     const double parallel = 1.0 / basis.origin_step;
     const double step = basis.orthographic ? 1.0 : 1.0 / basis.slope_step;
     for (int i = 0; i < kLanes; ++i) {
@@ -154,7 +167,7 @@ void project(const Basis& basis, const Points& points, Corners& corners) {
 
 /// Edge from corner `a` to corner `b`, its inside on the left if `side` is 1, else -1.
 INKTRACE_INLINE void lay_edge(const Corners& a, const Corners& b, const Lanes<float>& side,
-                              TrianglePacket::Edge& edge) {
+                              Lanes<float>* edge) {
     for (int i = 0; i < kLanes; ++i) {
         const bool swap = b.u[i] < a.u[i] || (b.u[i] == a.u[i] && b.v[i] < a.v[i]);
         const float sign = swap ? -side[i] : side[i];
@@ -162,17 +175,18 @@ INKTRACE_INLINE void lay_edge(const Corners& a, const Corners& b, const Lanes<fl
         const float y0 = swap ? b.v[i] : a.v[i];
         const float x1 = swap ? a.u[i] : b.u[i];
         const float y1 = swap ? a.v[i] : b.v[i];
-        edge.x[i] = x0;
-        edge.y[i] = y0;
-        edge.dx[i] = sign * (x1 - x0);
-        edge.dy[i] = sign * (y1 - y0);
+        edge[0][i] = x0;
+        edge[1][i] = y0;
+        edge[2][i] = sign * (x1 - x0);
+        edge[3][i] = sign * (y1 - y0);
     }
 }
 
 INKTRACE_MULTIVERSION
-void prepare_triangles(const Basis& basis, const Corners& a, const Corners& b, const Corners& c,
-                       TrianglePacket& packet) {
+void prepare_triangles(Basis basis, const Corners& a, const Corners& b, const Corners& c,
+                       BoundsPacket& __restrict bounds, FormLanes<TriangleForm>& __restrict form) {
     Lanes<float> side;
+    auto* depth = &form[12];  // behind the edges: u, v, z, gx, gy, w, wx, wy, near, far
     for (int i = 0; i < kLanes; ++i) {
         // Exact: products of differences of floats.
         const double area =
@@ -181,18 +195,19 @@ void prepare_triangles(const Basis& basis, const Corners& a, const Corners& b, c
         side[i] = area < 0.0 ? -1.0F : 1.0F;
         // Seen edge-on, it shows nothing.
         const float left = std::min(std::min(a.u[i], b.u[i]), c.u[i]) - kSlack;
-        packet.bounds.left[i] = area == 0.0 ? kInfinity : left;
-        packet.bounds.right[i] = std::max(std::max(a.u[i], b.u[i]), c.u[i]) + kSlack;
-        packet.bounds.top[i] = std::min(std::min(a.v[i], b.v[i]), c.v[i]) - kSlack;
-        packet.bounds.bottom[i] = std::max(std::max(a.v[i], b.v[i]), c.v[i]) + kSlack;
+        bounds.left[i] = area == 0.0 ? kInfinity : left;
+        bounds.right[i] = std::max(std::max(a.u[i], b.u[i]), c.u[i]) + kSlack;
+        bounds.top[i] = std::min(std::min(a.v[i], b.v[i]), c.v[i]) - kSlack;
+        bounds.bottom[i] = std::max(std::max(a.v[i], b.v[i]), c.v[i]) + kSlack;
         const double nearest = std::min(std::min(a.z[i], b.z[i]), c.z[i]);
         const double farthest = std::max(std::max(a.z[i], b.z[i]), c.z[i]);
-        packet.bounds.depth[i] = static_cast<float>(nearest) - kDepthSlack;
-        packet.far[i] = static_cast<float>(farthest);
+        bounds.depth[i] = static_cast<float>(nearest) - kDepthSlack;
+        depth[8][i] = static_cast<float>(nearest);
+        depth[9][i] = static_cast<float>(farthest);
     }
-    lay_edge(a, b, side, packet.edges[0]);
-    lay_edge(b, c, side, packet.edges[1]);
-    lay_edge(c, a, side, packet.edges[2]);
+    lay_edge(a, b, side, &form[0]);
+    lay_edge(b, c, side, &form[4]);
+    lay_edge(c, a, side, &form[8]);
     for (int i = 0; i < kLanes; ++i) {
         const double bx = b.x[i] - a.x[i];
         const double by = b.y[i] - a.y[i];
@@ -205,14 +220,14 @@ void prepare_triangles(const Basis& basis, const Corners& a, const Corners& b, c
         const double nz = bx * cy - by * cx;
         // The ray at depth a.z is this far from corner a, a pixel of q.
         const double step = basis.origin_step + a.z[i] * basis.slope_step;
-        packet.u[i] = a.u[i];
-        packet.v[i] = a.v[i];
-        packet.z[i] = static_cast<float>(a.z[i]);
-        packet.gx[i] = static_cast<float>(-step * nx);
-        packet.gy[i] = static_cast<float>(-step * ny);
-        packet.w[i] = static_cast<float>(nz);
-        packet.wx[i] = static_cast<float>(nx * basis.slope_step);
-        packet.wy[i] = static_cast<float>(ny * basis.slope_step);
+        depth[0][i] = a.u[i];
+        depth[1][i] = a.v[i];
+        depth[2][i] = static_cast<float>(a.z[i]);
+        depth[3][i] = static_cast<float>(-step * nx);
+        depth[4][i] = static_cast<float>(-step * ny);
+        depth[5][i] = static_cast<float>(nz);
+        depth[6][i] = static_cast<float>(nx * basis.slope_step);
+        depth[7][i] = static_cast<float>(ny * basis.slope_step);
     }
 }
 
@@ -229,7 +244,8 @@ void extend(const Corners& corners, BoundsPacket& packet) {
 
 /// With p = u (b - a) + v (c - a) and n = (b - a) x (c - a): p x (c - a) = u n, (b - a) x p = v n.
 INKTRACE_MULTIVERSION
-void record_triangles(const Points& a, const Points& b, const Points& c, HitRecord* records) {
+void record_triangles(const TriangleLanes& triangles, HitRecord* records) {
+    const auto& [a, b, c] = triangles;
     std::array<Lanes<float>, 9> values;
     for (int i = 0; i < kLanes; ++i) {
         const Vec3f e{b.x[i] - a.x[i], b.y[i] - a.y[i], b.z[i] - a.z[i]};
@@ -253,19 +269,11 @@ void record_triangles(const Points& a, const Points& b, const Points& c, HitReco
         records[i].normal = {values[0][i], values[1][i], values[2][i]};
         records[i].u_axis = {values[3][i], values[4][i], values[5][i]};
         records[i].v_axis = {values[6][i], values[7][i], values[8][i]};
-        records[i].is_sphere = false;
     }
 }
 
-/// Unused lanes repeat the last primitive, and then are emptied.
-std::uint32_t lane_source(std::span<const std::uint32_t> primitives, int lane) {
-    return primitives[std::min(static_cast<std::size_t>(lane), primitives.size() - 1)];
-}
-
-void set(Points& points, int lane, Vec3f p) {
-    points.x[lane] = p.x;
-    points.y[lane] = p.y;
-    points.z[lane] = p.z;
+Vec3f at(const Points& points, int lane) {
+    return {points.x[lane], points.y[lane], points.z[lane]};
 }
 
 void empty_unused(std::size_t used, BoundsPacket& bounds) {
@@ -280,46 +288,50 @@ BoundsPacket BoundsPacket::none() {
     return bounds;
 }
 
-void prepare(const Projection& projection, const Spheres& shape,
+void prepare(const Projection& projection, const SphereLanes& spheres, std::uint32_t object,
              std::span<const std::uint32_t> primitives, SpherePacket& packet, HitRecord* records) {
-    Points centres;
-    Lanes<float> radii;
-    for (int i = 0; i < kLanes; ++i) {
-        const std::uint32_t primitive = lane_source(primitives, i);
-        const Sphere& sphere = shape.spheres[primitive];
-        set(centres, i, sphere.centre);
-        radii[i] = sphere.radius;
-        records[i] = {.origin = sphere.centre, .primitive = primitive, .is_sphere = true};
-    }
     const Basis basis(projection);
+    FormLanes<SphereForm> form;
     if (basis.orthographic) {
-        prepare_orthographic(basis, centres, radii, packet);
+        prepare_orthographic(basis, spheres.centre, spheres.radius, packet.bounds, form);
     } else {
-        prepare_perspective(basis, centres, radii, packet);
+        prepare_perspective(basis, spheres.centre, spheres.radius, packet.bounds, form);
     }
+    transpose(form, packet.forms);
     empty_unused(primitives.size(), packet.bounds);
+    int lane = 0;
+    for (const std::uint32_t primitive : primitives) {
+        records[lane].origin = at(spheres.centre, lane);
+        records[lane].object = object;
+        records[lane].primitive = primitive;
+        records[lane].is_sphere = true;
+        ++lane;
+    }
 }
 
-void prepare(const Projection& projection, const Mesh& shape,
+void prepare(const Projection& projection, const TriangleLanes& triangles, std::uint32_t object,
              std::span<const std::uint32_t> primitives, TrianglePacket& packet,
              HitRecord* records) {
-    Points points[3];
-    for (int i = 0; i < kLanes; ++i) {
-        const std::uint32_t primitive = lane_source(primitives, i);
-        const auto& [a, b, c] = shape.triangles[primitive];
-        const Vec3f origin = shape.vertices[a];
-        set(points[0], i, origin);
-        set(points[1], i, shape.vertices[b]);
-        set(points[2], i, shape.vertices[c]);
-        records[i].origin = origin;
-        records[i].primitive = primitive;
-    }
     const Basis basis(projection);
-    Corners corners[3];
-    for (std::size_t k = 0; k < 3; ++k) project(basis, points[k], corners[k]);
-    prepare_triangles(basis, corners[0], corners[1], corners[2], packet);
-    record_triangles(points[0], points[1], points[2], records);
+    Corners a;
+    Corners b;
+    Corners c;
+    project(basis, triangles.a, a);
+    project(basis, triangles.b, b);
+    project(basis, triangles.c, c);
+    FormLanes<TriangleForm> form;
+    prepare_triangles(basis, a, b, c, packet.bounds, form);
+    transpose(form, packet.forms);
     empty_unused(primitives.size(), packet.bounds);
+    record_triangles(triangles, records);
+    int lane = 0;
+    for (const std::uint32_t primitive : primitives) {
+        records[lane].origin = at(triangles.a, lane);
+        records[lane].object = object;
+        records[lane].primitive = primitive;
+        records[lane].is_sphere = false;
+        ++lane;
+    }
 }
 
 void prepare(const Projection& projection, std::span<const Bounds3f> boxes, BoundsPacket& packet) {
@@ -334,7 +346,10 @@ void prepare(const Projection& projection, std::span<const Bounds3f> boxes, Boun
     for (int corner = 0; corner < 8; ++corner) {
         for (int i = 0; i < kLanes; ++i) {
             const std::size_t k = std::min(static_cast<std::size_t>(i), boxes.size() - 1);
-            set(points, i, boxes[k].corner(corner));
+            const Vec3f p = boxes[k].corner(corner);
+            points.x[i] = p.x;
+            points.y[i] = p.y;
+            points.z[i] = p.z;
         }
         project(basis, points, corners);
         extend(corners, packet);

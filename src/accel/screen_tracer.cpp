@@ -4,7 +4,6 @@
 #include <bit>
 #include <cmath>
 #include <utility>
-#include <variant>
 #include <vector>
 
 #include "accel/screen_kernels.h"
@@ -102,10 +101,15 @@ BoundsPyramid::BoundsPyramid(const Clusters& clusters, const Projection& project
 
 /// What all tiles share.
 struct View {
-    const Scene& scene;
     const Clusters& clusters;
     Projection projection;
     BoundsPyramid pyramid;
+
+    Window window(const ScreenBox& box) const {
+        const Vec2f centre = projection.centre;
+        return {box.left - centre.x, box.right - centre.x, box.top - centre.y,
+                box.bottom - centre.y, kInfinity};
+    }
 };
 
 class ScreenTileTracer final : public TileTracer {
@@ -118,6 +122,7 @@ class ScreenTileTracer final : public TileTracer {
     void identify(std::span<const PointPacket> points, std::span<const RayPacket> rays,
                   std::span<HitPacket> hits) override;
     bool needs_rays() const override { return false; }
+    bool reaches(const ScreenBox& box) const override;
 
   private:
     /// A cluster that reaches into the area.
@@ -131,9 +136,9 @@ class ScreenTileTracer final : public TileTracer {
 
     void find_front(Front& front);
     void test(Candidate& candidate, Front& front);
-    template <class Primitives, class Packet>
-    void test(const Primitives& shape, Candidate& candidate, std::vector<Packet>& packets,
-              std::uint32_t& used, Front& front);
+    template <class PrimitiveLanes, class Packet>
+    void test(const PrimitiveLanes& primitives, const Cluster& cluster, Candidate& candidate,
+              std::vector<Packet>& packets, std::uint32_t& used, Front& front);
 
     const View& view_;
     std::vector<Candidate> candidates_;  ///< nearest first
@@ -147,9 +152,7 @@ class ScreenTileTracer final : public TileTracer {
 };
 
 void ScreenTileTracer::enter(const ScreenBox& area) {
-    const Vec2f centre = view_.projection.centre;
-    const Window window{area.left - centre.x, area.right - centre.x, area.top - centre.y,
-                        area.bottom - centre.y, kInfinity};
+    const Window window = view_.window(area);
     candidates_.clear();
     spheres_used_ = 0;
     triangles_used_ = 0;
@@ -187,6 +190,12 @@ void ScreenTileTracer::identify(std::span<const PointPacket> points,
     }
 }
 
+bool ScreenTileTracer::reaches(const ScreenBox& box) const {
+    const Window window = view_.window(box);
+    return std::ranges::any_of(
+        bounds_, [&](const BoundsPacket& bounds) { return overlap(bounds, window) != 0; });
+}
+
 void ScreenTileTracer::find_front(Front& front) {
     for (std::size_t k = 0; k < bounds_.size(); ++k) {
         if (!(bounds_[k].depth[0] < front.window.farthest)) return;
@@ -199,39 +208,37 @@ void ScreenTileTracer::find_front(Front& front) {
 }
 
 void ScreenTileTracer::test(Candidate& candidate, Front& front) {
-    const Cluster& cluster = view_.clusters.clusters[candidate.cluster];
-    const Shape& shape = view_.scene.objects()[cluster.object].shape;
-    if (const auto* spheres = std::get_if<Spheres>(&shape)) {
-        test(*spheres, candidate, spheres_, spheres_used_, front);
+    const Clusters& clusters = view_.clusters;
+    const Cluster& cluster = clusters.clusters[candidate.cluster];
+    if (cluster.kind == ClusterKind::spheres) {
+        test(clusters.spheres[cluster.packet], cluster, candidate, spheres_, spheres_used_, front);
     } else {
-        test(std::get<Mesh>(shape), candidate, triangles_, triangles_used_, front);
+        test(clusters.triangles[cluster.packet], cluster, candidate, triangles_, triangles_used_,
+             front);
     }
 }
 
-template <class Primitives, class Packet>
-void ScreenTileTracer::test(const Primitives& shape, Candidate& candidate,
-                            std::vector<Packet>& packets, std::uint32_t& used, Front& front) {
+template <class PrimitiveLanes, class Packet>
+void ScreenTileTracer::test(const PrimitiveLanes& primitives, const Cluster& cluster,
+                            Candidate& candidate, std::vector<Packet>& packets, std::uint32_t& used,
+                            Front& front) {
     if (candidate.packet == kNotYet) {
         if (used == packets.size()) packets.emplace_back();
         if (records_used_ == records_.size()) records_.resize(records_.size() + kLanes);
         candidate.packet = used++;
         candidate.first_record = records_used_;
         records_used_ += kLanes;
-        const Cluster& cluster = view_.clusters.clusters[candidate.cluster];
-        HitRecord* records = records_.data() + candidate.first_record;
-        prepare(view_.projection, shape,
+        prepare(view_.projection, primitives, cluster.object,
                 std::span(view_.clusters.order).subspan(cluster.first, cluster.count),
-                packets[candidate.packet], records);
-        for (int i = 0; i < kLanes; ++i) records[i].object = cluster.object;
+                packets[candidate.packet], records_.data() + candidate.first_record);
     }
     ink::intersect(view_.projection, packets[candidate.packet], candidate.first_record, front);
 }
 
 class ScreenFrameTracer final : public FrameTracer {
   public:
-    ScreenFrameTracer(const Scene& scene, const Clusters& clusters, const Projection& projection,
-                      int threads)
-        : view_{scene, clusters, projection, BoundsPyramid(clusters, projection, threads)} {}
+    ScreenFrameTracer(const Clusters& clusters, const Projection& projection, int threads)
+        : view_{clusters, projection, BoundsPyramid(clusters, projection, threads)} {}
 
     std::unique_ptr<TileTracer> tile_tracer() const override {
         return std::make_unique<ScreenTileTracer>(view_);
@@ -243,9 +250,9 @@ class ScreenFrameTracer final : public FrameTracer {
 
 }  // namespace
 
-std::unique_ptr<FrameTracer> make_screen_tracer(const Scene& scene, const Clusters& clusters,
+std::unique_ptr<FrameTracer> make_screen_tracer(const Clusters& clusters,
                                                 const Projection& projection, int threads) {
-    return std::make_unique<ScreenFrameTracer>(scene, clusters, projection, threads);
+    return std::make_unique<ScreenFrameTracer>(clusters, projection, threads);
 }
 
 }  // namespace ink

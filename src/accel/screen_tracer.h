@@ -13,11 +13,12 @@ namespace ink {
 /// screen bounds reach it, nearest first; a packet of rays asks those about its points, sixteen
 /// points by one primitive at a time, and stops at the first cluster behind what it has found.
 ///
-/// The projection must see all of the scene. Positions on the screen are rounded once, from double
-/// precision, relative to the picture's centre: outlines are within 2^-14 pixel in pictures of up
-/// to 4096 pixels. Neighbouring triangles share the arithmetic of their common edge, so that no ray
-/// passes between them. A hit depends on the ray's point alone, not on tiles or packets.
-std::unique_ptr<FrameTracer> make_screen_tracer(const Scene& scene, const Clusters& clusters,
+/// The clusters must outlive the tracer. The projection must see all of the scene. Positions on the
+/// screen are rounded once, from double precision, relative to the picture's centre: outlines are
+/// within 2^-14 pixel in pictures of up to 4096 pixels. Neighbouring triangles share the arithmetic
+/// of their common edge, so that no ray passes between them. A hit depends on the ray's point
+/// alone, not on tiles or packets.
+std::unique_ptr<FrameTracer> make_screen_tracer(const Clusters& clusters,
                                                 const Projection& projection, int threads);
 
 }  // namespace ink

@@ -57,6 +57,9 @@ class MergedTileTracer final : public TileTracer {
         second_->intersect(points, rays, others_);
         for (std::size_t k = 0; k < hits.size(); ++k) take_nearer(others_[k], hits[k]);
     }
+    bool reaches(const ScreenBox& box) const override {
+        return first_->reaches(box) || second_->reaches(box);
+    }
 
   private:
     INKTRACE_MULTIVERSION
@@ -132,7 +135,7 @@ class SceneTracer final : public Tracer {
         if (!projection.sees_all() || std::ranges::none_of(objects, has_screen_form)) {
             return all_.get().frame(projection, threads);
         }
-        auto screen = make_screen_tracer(scene_, clusters_, projection, threads);
+        auto screen = make_screen_tracer(clusters_, projection, threads);
         if (std::ranges::all_of(objects, has_screen_form)) return screen;
         return std::make_unique<MergedFrameTracer>(std::move(screen),
                                                    others_.get().frame(projection, threads));

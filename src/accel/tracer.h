@@ -71,6 +71,9 @@ class TileTracer {
         intersect(points, rays, hits);
     }
     virtual bool needs_rays() const { return true; }
+
+    /// False only if no ray through a point of the box, which lies within the area, hits anything.
+    virtual bool reaches(const ScreenBox& /*box*/) const { return true; }
 };
 
 /// The scene seen through one camera. Safe to use from many threads.

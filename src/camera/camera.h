@@ -96,13 +96,14 @@ class Camera {
 };
 
 void Camera::make_rays(const Lanes<float>& x, const Lanes<float>& y, RayPacket& rays) const {
+    const RayField field = field_;  // nothing that the loop writes can change it
     for (int i = 0; i < kLanes; ++i) {
-        rays.origin_x[i] = field_.origin.x + x[i] * field_.origin_dx.x + y[i] * field_.origin_dy.x;
-        rays.origin_y[i] = field_.origin.y + x[i] * field_.origin_dx.y + y[i] * field_.origin_dy.y;
-        rays.origin_z[i] = field_.origin.z + x[i] * field_.origin_dx.z + y[i] * field_.origin_dy.z;
-        const float dx = field_.dir.x + x[i] * field_.dir_dx.x + y[i] * field_.dir_dy.x;
-        const float dy = field_.dir.y + x[i] * field_.dir_dx.y + y[i] * field_.dir_dy.y;
-        const float dz = field_.dir.z + x[i] * field_.dir_dx.z + y[i] * field_.dir_dy.z;
+        rays.origin_x[i] = field.origin.x + x[i] * field.origin_dx.x + y[i] * field.origin_dy.x;
+        rays.origin_y[i] = field.origin.y + x[i] * field.origin_dx.y + y[i] * field.origin_dy.y;
+        rays.origin_z[i] = field.origin.z + x[i] * field.origin_dx.z + y[i] * field.origin_dy.z;
+        const float dx = field.dir.x + x[i] * field.dir_dx.x + y[i] * field.dir_dy.x;
+        const float dy = field.dir.y + x[i] * field.dir_dx.y + y[i] * field.dir_dy.y;
+        const float dz = field.dir.z + x[i] * field.dir_dx.z + y[i] * field.dir_dy.z;
         const float scale = 1.0F / std::sqrt(dx * dx + dy * dy + dz * dz);
         rays.dir_x[i] = dx * scale;
         rays.dir_y[i] = dy * scale;

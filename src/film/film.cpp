@@ -101,7 +101,7 @@ void pack(ColorPacket& c, Lanes<std::uint32_t>& bytes) {
 
 INKTRACE_MULTIVERSION
 void accumulate(const ColorPacket& shaded, const ColorPacket& blend_space,
-                const Lanes<float>& strength, PixelSums& sums) {
+                const Lanes<float>& strength, PixelSums& __restrict sums) {
     for (int i = 0; i < kLanes; ++i) {
         sums.shaded.r[i] += shaded.r[i];
         sums.shaded.g[i] += shaded.g[i];

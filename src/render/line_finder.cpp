@@ -8,13 +8,11 @@ namespace ink {
 
 namespace {
 
-bool near_scene(const Camera& camera, const Block& block, int q) {
-    const ScreenBox& box = camera.scene_box();
-    const float scale = 1.0F / static_cast<float>(q);
-    const auto left = static_cast<float>(block.x) * scale;
-    const auto top = static_cast<float>(block.y) * scale;
-    const float side = kBlockSide * scale;
-    return left + side > box.left && left < box.right && top + side > box.top && top < box.bottom;
+ScreenBox screen_box(const Block& block, float spacing) {
+    const auto left = static_cast<float>(block.x);
+    const auto top = static_cast<float>(block.y);
+    return {left * spacing, top * spacing, (left + kBlockSide) * spacing,
+            (top + kBlockSide) * spacing};
 }
 
 }  // namespace
@@ -29,6 +27,11 @@ void LineFinder::trace_lattice(const Tile& tile) {
     grid_.resize((tile.x1 - tile.x0) * q + 1, (tile.y1 - tile.y0) * q + 1);
     std::ranges::fill(grid_.id, kBackground);
 
+    // The last column and row of blocks reach beyond the grid.
+    const float beyond = kBlockSide * grid_.spacing;
+    sampler_.enter({static_cast<float>(tile.x0), static_cast<float>(tile.y0),
+                    static_cast<float>(tile.x1) + beyond, static_cast<float>(tile.y1) + beyond});
+
     blocks_across_ = (grid_.width + kBlockSide - 1) / kBlockSide;
     const int blocks_down = (grid_.height + kBlockSide - 1) / kBlockSide;
     block_at_.clear();
@@ -38,7 +41,7 @@ void LineFinder::trace_lattice(const Tile& tile) {
             const Block block{grid_.x0 + i * kBlockSide, grid_.y0 + j * kBlockSide,
                               std::min(kBlockSide, grid_.width - i * kBlockSide),
                               std::min(kBlockSide, grid_.height - j * kBlockSide)};
-            const bool near = near_scene(edges_.pipeline.camera, block, q);
+            const bool near = sampler_.reaches(screen_box(block, grid_.spacing));
             block_at_.push_back(near ? static_cast<std::uint32_t>(blocks_.size()) : kEmptyBlock);
             if (near) blocks_.push_back(block);
         }
@@ -62,7 +65,7 @@ namespace {
 /// Positions and IDs of a packet.
 INKTRACE_MULTIVERSION
 void locate_hits(const RayPacket& rays, const HitPacket& hits, const NormalPacket& normals,
-                 std::array<Lanes<float>, 7>& values) {
+                 std::array<Lanes<float>, 7>& __restrict values) {
     for (int i = 0; i < kLanes; ++i) {
         const bool hit = hits.object[i] != kNoObject;
         const float t = hit ? hits.t[i] : 0.0F;

@@ -338,11 +338,11 @@ void write_aovs(const Stencils& stencils, const Workspace& work, Vec2f offset) {
 /// and shaded as normal with colour c_s; its ray stencil is traced and gives the edge strength e_s;
 /// c_s is mixed with the line's colour by e_s; a pixel is the mean of its samples.
 void render_tile(const Stencils& stencils, Workspace& work, const Tile& tile) {
-    sort_blocks(tile, stencils.pipeline.camera, stencils.reach, work.blocks, work.empty);
     // Blocks at the film's edge are whole.
     const float reach = std::max(stencils.reach, stencils.ridge_reach) + kBlockSide;
     work.sampler.enter({static_cast<float>(tile.x0) - reach, static_cast<float>(tile.y0) - reach,
                         static_cast<float>(tile.x1) + reach, static_cast<float>(tile.y1) + reach});
+    sort_blocks(tile, work.sampler, stencils.reach, work.blocks, work.empty);
     for (const Block block : work.empty) {
         stencils.pipeline.film.put_background(block.x, block.y);
     }

@@ -15,17 +15,16 @@ std::vector<Tile> cut_into_tiles(Size size, int side) {
     return tiles;
 }
 
-void sort_blocks(const Tile& tile, const Camera& camera, float reach,
+void sort_blocks(const Tile& tile, const Sampler& sampler, float reach,
                  std::vector<Block>& near_scene, std::vector<Block>& empty) {
     near_scene.clear();
     empty.clear();
-    const ScreenBox& box = camera.scene_box();
     for (int y = tile.y0; y < tile.y1; y += kBlockSide) {
         for (int x = tile.x0; x < tile.x1; x += kBlockSide) {
             const auto left = static_cast<float>(x);
             const auto top = static_cast<float>(y);
-            const bool near = left + kBlockSide + reach > box.left && left - reach < box.right &&
-                              top + kBlockSide + reach > box.top && top - reach < box.bottom;
+            const bool near = sampler.reaches(
+                {left - reach, top - reach, left + kBlockSide + reach, top + kBlockSide + reach});
             (near ? near_scene : empty).push_back({x, y});
         }
     }

@@ -16,9 +16,9 @@ struct Tile {
 /// The picture cut into squares of `side` pixels, row by row.
 std::vector<Tile> cut_into_tiles(Size size, int side);
 
-/// The blocks of a tile, split by whether any ray through a point within `reach` pixels of the
-/// block can hit the scene.
-void sort_blocks(const Tile& tile, const Camera& camera, float reach,
+/// The blocks of a tile, which the sampler has entered, split by whether any ray through a point
+/// within `reach` pixels of the block can hit the scene.
+void sort_blocks(const Tile& tile, const Sampler& sampler, float reach,
                  std::vector<Block>& near_scene, std::vector<Block>& empty);
 
 }  // namespace ink

@@ -9,18 +9,18 @@ namespace ink {
 
 namespace {
 
-INKTRACE_INLINE void place_block(float spacing, Block block, Vec2f offset, PointPacket& points) {
-    for (int i = 0; i < kLanes; ++i) {
-        points.x[i] = (static_cast<float>(block.x + i % kBlockSide) + 0.5F) * spacing + offset.x;
-        points.y[i] = (static_cast<float>(block.y + i / kBlockSide) + 0.5F) * spacing + offset.y;
-        const bool wanted = i % kBlockSide < block.columns && i / kBlockSide < block.rows;
-        points.active[i] = wanted ? -1 : 0;
-    }
-}
-
 INKTRACE_MULTIVERSION
 void place_blocks(float spacing, std::span<const Block> blocks, Vec2f offset, PointPacket* points) {
-    for (const Block& block : blocks) place_block(spacing, block, offset, *points++);
+    for (const Block block : blocks) {  // a copy: nothing that the loop writes can change it
+        PointPacket& packet = *points++;
+        for (int i = 0; i < kLanes; ++i) {
+            const int column = i % kBlockSide;
+            const int row = i / kBlockSide;
+            packet.x[i] = (static_cast<float>(block.x + column) + 0.5F) * spacing + offset.x;
+            packet.y[i] = (static_cast<float>(block.y + row) + 0.5F) * spacing + offset.y;
+            packet.active[i] = -static_cast<int>(column < block.columns && row < block.rows);
+        }
+    }
 }
 
 INKTRACE_MULTIVERSION
@@ -84,6 +84,12 @@ ScreenBox shifted(const ScreenBox& box, Vec2f by) {
 void Sampler::enter(const ScreenBox& area) {
     area_ = area;
     tracer_->enter(area);
+}
+
+bool Sampler::reaches(const ScreenBox& box) const {
+    const ScreenBox& scene = camera_.scene_box();
+    return box.right > scene.left && box.left < scene.right && box.bottom > scene.top &&
+           box.top < scene.bottom && tracer_->reaches(box);
 }
 
 bool Sampler::entered(const ScreenBox& box) const {

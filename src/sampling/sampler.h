@@ -30,6 +30,8 @@ class Sampler {
     /// The part of the screen that the next calls are about. Needless, but it saves time to name
     /// it once instead of letting every call find out.
     void enter(const ScreenBox& area);
+    /// Within that part: false only if no ray through a point of the box hits anything.
+    bool reaches(const ScreenBox& box) const;
 
     /// One packet a block: the rays through every point plus `offset` (pixels). Normals of hits
     /// come back with unit length and facing the ray's origin.
