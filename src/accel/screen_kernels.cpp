@@ -117,7 +117,8 @@ HWY_INLINE Vector edge_value(const TriangleForm::Edge& edge, Vector qx, Vector q
                    hn::Mul(set(edge.dy), hn::Sub(qx, set(edge.x))));
 }
 
-HWY_INLINE void intersect_triangle(const TriangleForm& form, std::uint32_t winner, Front& front) {
+/// True if it is the nearest so far on some ray.
+HWY_INLINE bool intersect_triangle(const TriangleForm& form, std::uint32_t winner, Front& front) {
     bool changed = false;
     for (int i = 0; i < kLanes; i += kStep) {
         const auto qx = load(front.x, i);
@@ -135,15 +136,17 @@ HWY_INLINE void intersect_triangle(const TriangleForm& form, std::uint32_t winne
         const auto depth = hn::Min(hn::Max(plane, set(form.near)), set(form.far));
         changed |= keep_nearer(depth, covered, winner, i, front);
     }
-    if (changed) update_farthest(front);
+    return changed;
 }
 
 void intersect_triangles(const TrianglePacket& packet, std::uint32_t first, Front& front) {
+    bool changed = false;
     for (LaneBits lanes = overlap_lanes(packet.bounds, front.window); lanes != 0;
          lanes &= lanes - 1) {
         const auto lane = static_cast<std::uint32_t>(std::countr_zero(lanes));
-        intersect_triangle(packet.forms[lane], first + lane, front);
+        changed |= intersect_triangle(packet.forms[lane], first + lane, front);
     }
+    if (changed) update_farthest(front);
 }
 
 void start_front(float centre_x, float centre_y, float slope_step, const PointPacket& points,

@@ -135,9 +135,9 @@ class ScreenTileTracer final : public TileTracer {
     static constexpr std::uint32_t kNotYet = 0xFFFFFFFFU;
 
     void find_front(Front& front);
-    void test(Candidate& candidate, Front& front);
+    void test(std::size_t i, Front& front);
     template <class PrimitiveLanes, class Packet>
-    void test(const PrimitiveLanes& primitives, const Cluster& cluster, Candidate& candidate,
+    void test(const PrimitiveLanes& primitives, const Cluster& cluster, std::size_t i,
               std::vector<Packet>& packets, std::uint32_t& used, Front& front);
 
     const View& view_;
@@ -198,30 +198,30 @@ bool ScreenTileTracer::reaches(const ScreenBox& box) const {
 
 void ScreenTileTracer::find_front(Front& front) {
     for (std::size_t k = 0; k < bounds_.size(); ++k) {
-        if (!(bounds_[k].depth[0] < front.window.farthest)) return;
+        if (!(candidates_[k * kLanes].depth < front.window.farthest)) return;
         for (LaneBits lanes = overlap(bounds_[k], front.window); lanes != 0; lanes &= lanes - 1) {
             const int lane = std::countr_zero(lanes);
-            if (!(bounds_[k].depth[lane] < front.window.farthest)) return;
-            test(candidates_[k * kLanes + static_cast<std::size_t>(lane)], front);
+            const std::size_t i = k * kLanes + static_cast<std::size_t>(lane);
+            if (!(candidates_[i].depth < front.window.farthest)) return;
+            test(i, front);
         }
     }
 }
 
-void ScreenTileTracer::test(Candidate& candidate, Front& front) {
+void ScreenTileTracer::test(std::size_t i, Front& front) {
     const Clusters& clusters = view_.clusters;
-    const Cluster& cluster = clusters.clusters[candidate.cluster];
+    const Cluster& cluster = clusters.clusters[candidates_[i].cluster];
     if (cluster.kind == ClusterKind::spheres) {
-        test(clusters.spheres[cluster.packet], cluster, candidate, spheres_, spheres_used_, front);
+        test(clusters.spheres[cluster.packet], cluster, i, spheres_, spheres_used_, front);
     } else {
-        test(clusters.triangles[cluster.packet], cluster, candidate, triangles_, triangles_used_,
-             front);
+        test(clusters.triangles[cluster.packet], cluster, i, triangles_, triangles_used_, front);
     }
 }
 
 template <class PrimitiveLanes, class Packet>
-void ScreenTileTracer::test(const PrimitiveLanes& primitives, const Cluster& cluster,
-                            Candidate& candidate, std::vector<Packet>& packets, std::uint32_t& used,
-                            Front& front) {
+void ScreenTileTracer::test(const PrimitiveLanes& primitives, const Cluster& cluster, std::size_t i,
+                            std::vector<Packet>& packets, std::uint32_t& used, Front& front) {
+    Candidate& candidate = candidates_[i];
     if (candidate.packet == kNotYet) {
         if (used == packets.size()) packets.emplace_back();
         if (records_used_ == records_.size()) records_.resize(records_.size() + kLanes);
@@ -231,6 +231,9 @@ void ScreenTileTracer::test(const PrimitiveLanes& primitives, const Cluster& clu
         prepare(view_.projection, primitives, cluster.object,
                 std::span(view_.clusters.order).subspan(cluster.first, cluster.count),
                 packets[candidate.packet], records_.data() + candidate.first_record);
+        // Closer than those of the cluster's box.
+        set_union(packets[candidate.packet].bounds, bounds_[i / kLanes],
+                  static_cast<int>(i % kLanes));
     }
     ink::intersect(view_.projection, packets[candidate.packet], candidate.first_record, front);
 }
