@@ -99,6 +99,14 @@ TEST(Mol2Reader, RefusesWhatMakesNoSense) {
     expect_refused(folder.write("b.mol2", "hello\n"), "has no line '@<TRIPOS>MOLECULE'");
 }
 
+TEST(Mol2Reader, ReadsAtomsBeforeTheFirstResidueThatHasAName) {
+    const TemporaryFolder folder;
+    const FileContents contents = read_file(folder.write(
+        "a.mol2",
+        "@<TRIPOS>MOLECULE\nx\n2\nSMALL\nX\n@<TRIPOS>ATOM\n1 C1 0 0 0 C.3\n2 O 9 0 0 O.3 1 HOH\n"));
+    EXPECT_EQ(spheres(contents).parts, (std::vector<std::uint32_t>{0, 0}));
+}
+
 TEST(Mol2Reader, TakesTheElementFromTheNameWhereTypesAreAForceFields) {
     const TemporaryFolder folder;
     const auto file = folder.write(

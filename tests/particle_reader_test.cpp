@@ -185,6 +185,9 @@ TEST(TouchingRadius, IsHalfTheSpacingOfALatticeInAnyNumberOfDimensions) {
     }
     EXPECT_GT(touching_radius(std::vector<Vec3f>(1000, Vec3f{1, 2, 3})), 0.0);
     EXPECT_GT(touching_radius({{0, 0, 0}}), 0.0);
+    // Places that are none, and distances that only a double can divide by.
+    EXPECT_NEAR(touching_radius({{0, 0, 0}, {NAN, 0, 0}, {2, 0, 0}, {0, INFINITY, 0}}), 1.0, 1e-6);
+    EXPECT_GT(touching_radius({{0, 0, 0}, {1e-44F, 0, 0}, {0, 1e-44F, 0}}), 0.0);
 }
 
 // ---- LAMMPS ----

@@ -231,7 +231,7 @@ template <class T>
 void put(std::string& bytes, const std::vector<T>& values) {
     const std::uint64_t count = values.size();
     bytes.append(reinterpret_cast<const char*>(&count), sizeof(count));
-    bytes.append(reinterpret_cast<const char*>(values.data()), count * sizeof(T));
+    if (count > 0) bytes.append(reinterpret_cast<const char*>(values.data()), count * sizeof(T));
 }
 
 void put(std::string& bytes, std::string_view text) {
@@ -250,6 +250,7 @@ class Parcel {
         std::memcpy(&count, rest_.data(), sizeof(count));
         rest_.remove_prefix(sizeof(count));
         if (count > rest_.size() / sizeof(T)) return false;
+        if (count == 0) return true;
         values.resize(count);
         std::memcpy(values.data(), rest_.data(), count * sizeof(T));
         rest_.remove_prefix(count * sizeof(T));

@@ -15,6 +15,14 @@ namespace ink {
 
 /// A JSON value that knows its line, for messages.
 struct JsonValue {
+    // Where they are defined, `members` is complete; clang insists.
+    JsonValue();
+    JsonValue(const JsonValue& other);
+    JsonValue(JsonValue&& other) noexcept;
+    JsonValue& operator=(const JsonValue& other);
+    JsonValue& operator=(JsonValue&& other) noexcept;
+    ~JsonValue();
+
     enum class Kind { null, boolean, number, text, list, object };
     Kind kind = Kind::null;
     std::size_t line = 1;

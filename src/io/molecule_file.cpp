@@ -98,6 +98,13 @@ std::uint32_t index_of(std::string_view name, std::unordered_map<std::string, st
 void MoleculeBuilder::begin_residue(std::string_view chain, std::string_view name,
                                     std::int32_t number, std::string_view asym,
                                     std::string_view entity) {
+    if (molecule_.residue_table.empty() && !empty()) {
+        // Atoms before the first residue that has a name are in one of their own.
+        molecule_.residue_table.push_back(
+            {"", 0, index_of(chain, chain_by_name_, molecule_.chains),
+             index_of(asym.empty() ? chain : asym, asym_by_name_, molecule_.asyms)});
+        molecule_.residues.assign(molecule_.atom_count(), 0);
+    }
     Residue residue{std::string(name), number};
     residue.chain = index_of(chain, chain_by_name_, molecule_.chains);
     residue.asym = index_of(asym.empty() ? chain : asym, asym_by_name_, molecule_.asyms);

@@ -52,7 +52,7 @@ class CellGrid {
             }
         }
         std::ranges::sort(found);
-        found.erase(std::ranges::unique(found).begin(), found.end());
+        found.erase(std::unique(found.begin(), found.end()), found.end());
     }
 
   private:

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <map>
 
@@ -120,7 +121,7 @@ class PointGrid {
             const bool flat = !(sides[axis] > kFlat * longest);
             const double cells = flat || !(size > 0.0) ? 1.0 : std::floor(sides[axis] / size);
             cells_[axis] = static_cast<std::size_t>(std::clamp(cells, 1.0, count));
-            scale_[axis] = flat ? 0.0F : static_cast<float>(cells_[axis]) / sides[axis];
+            scale_[axis] = flat ? 0.0 : static_cast<double>(cells_[axis]) / double{sides[axis]};
         }
     }
     std::array<std::size_t, 3> place(Vec3f p) const {
@@ -128,7 +129,7 @@ class PointGrid {
         const std::array<float, 3> offset{d.x, d.y, d.z};
         std::array<std::size_t, 3> at{};
         for (std::size_t axis = 0; axis < 3; ++axis) {
-            const float along = std::max(offset[axis] * scale_[axis], 0.0F);
+            const double along = std::max(offset[axis] * scale_[axis], 0.0);
             at[axis] = std::min(static_cast<std::size_t>(along), cells_[axis] - 1);
         }
         return at;
@@ -141,13 +142,27 @@ class PointGrid {
     const std::vector<Vec3f>& points_;
     Vec3f lower_;
     std::array<std::size_t, 3> cells_{1, 1, 1};
-    std::array<float, 3> scale_{};
+    std::array<double, 3> scale_{};  ///< cells per length
     std::vector<std::uint32_t> begin_, order_;
 };
 
 }  // namespace
 
+namespace {
+
+bool is_placed(Vec3f p) {
+    constexpr float kLargest = 1e15F;
+    return std::abs(p.x) <= kLargest && std::abs(p.y) <= kLargest && std::abs(p.z) <= kLargest;
+}
+
+}  // namespace
+
 double touching_radius(const std::vector<Vec3f>& positions) {
+    if (!std::ranges::all_of(positions, is_placed)) {
+        std::vector<Vec3f> placed;
+        std::ranges::copy_if(positions, std::back_inserter(placed), is_placed);
+        return touching_radius(placed);
+    }
     if (positions.size() < 2) return 0.5;
     const PointGrid grid(positions);
     constexpr std::size_t kSample = 2000;

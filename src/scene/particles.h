@@ -32,7 +32,8 @@ bool is_diameter_name(std::string_view name);
 std::vector<std::string> requested_fields(const DataSettings& settings);
 
 /// Half the usual distance from a particle to its nearest neighbour: the radius at which particles
-/// without one touch. Positive; the median over a sample. Linear in time and memory.
+/// without one touch. Positive; the median over a sample. Places that are not finite do not count.
+/// Linear in time and memory.
 double touching_radius(const std::vector<Vec3f>& positions);
 
 /// The particles as objects to draw, with what was left out or chosen in `warnings`. Throws Error
