@@ -6,7 +6,7 @@ SAMPLE := samples/acetaminophen.xyz
 # WERROR=ON makes warnings errors; empty leaves it to the preset.
 WERROR ?=
 
-.PHONY: all figure test bench format packages build clean
+.PHONY: all figure gallery test bench format packages build clean
 
 all: build
 
@@ -21,6 +21,11 @@ figure: build
 	    $(BIN) render $(SAMPLE) --compose $$compose -o out/acetaminophen-$$compose.png --quiet; \
 	    echo "wrote out/acetaminophen-$$compose.png"; \
 	done
+
+# All figures of the paper, as out/gallery/index.html.
+gallery: build
+	@mkdir -p out
+	$(BIN) gallery -o out/gallery
 
 test: build
 	ctest --preset $(PRESET)

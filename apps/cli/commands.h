@@ -10,4 +10,10 @@ void add_render_command(CLI::App& app);
 /// Adds `inktrace info`.
 void add_info_command(CLI::App& app);
 
+/// Adds `inktrace gallery`.
+void add_gallery_command(CLI::App& app);
+
+/// Adds `inktrace bench`.
+void add_bench_command(CLI::App& app);
+
 }  // namespace inktrace::cli

@@ -76,6 +76,8 @@ int run(int argc, char** argv) {
     app.footer(formats);
     inktrace::cli::add_render_command(app);
     inktrace::cli::add_info_command(app);
+    inktrace::cli::add_gallery_command(app);
+    inktrace::cli::add_bench_command(app);
     try {
         app.parse(argc, argv);
         if (app.get_subcommands().empty()) return report_usage("a command is missing");

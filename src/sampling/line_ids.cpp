@@ -64,7 +64,9 @@ void LineIds::add(const Object& object, IdLevel level, GeometryId& next) {
     } else if (continues && level != IdLevel::primitive && objects_.back().stride == 0) {
         objects_.push_back({objects_.back().first, 0, nullptr, false, IdLevel::object});
     } else if (level == IdLevel::primitive) {
-        const bool ball = std::holds_alternative<Spheres>(object.shape);
+        const auto* glyphs = std::get_if<Glyphs>(&object.shape);
+        const bool ball = std::holds_alternative<Spheres>(object.shape) ||
+                          (glyphs != nullptr && glyphs->shape.kind == GlyphKind::ellipsoid);
         objects_.push_back({next, 1, nullptr, ball});
         next += static_cast<GeometryId>(object.primitive_count());
     } else {

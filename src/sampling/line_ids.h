@@ -19,8 +19,8 @@ class LineIds {
     /// `level` for every object, whatever it names.
     static LineIds at_level(const Scene& scene, IdLevel level);
 
-    /// Whether all that shares an ID of this object is one ball, on which there is no line: neither
-    /// crease nor self-occlusion.
+    /// Whether all that shares an ID of this object is one ball or ellipsoid, on which there is no
+    /// line: neither crease nor self-occlusion.
     bool is_ball(std::uint32_t object) const { return objects_[object].ball; }
 
     void resolve(const HitPacket& hits, Lanes<GeometryId>& ids) const;
