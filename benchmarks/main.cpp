@@ -68,13 +68,13 @@ std::vector<Variant> variants(Size size, int most_threads, bool stencils) {
     list.push_back({fmt::format("no lines, {} threads", most_threads), threaded});
     for (const double width : {2.0, 8.0}) {
         Settings lines = plain;
-        lines.lines = LineTypes::all();
+        lines.lines = LineTypes::usual();
         lines.line_width.value = width;
         list.push_back({fmt::format("edges, {} px", width), lines});
     }
     for (int rings = 1; stencils && rings <= 3; ++rings) {
         Settings lines = plain;
-        lines.lines = LineTypes::all();
+        lines.lines = LineTypes::usual();
         lines.line_width.value = 2.0;
         lines.method = Method::stencil;
         lines.rings = rings;

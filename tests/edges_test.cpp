@@ -832,6 +832,38 @@ TEST(LinePlanes, SayWhatLineAPixelShows) {
     }
 }
 
+/// A rectangle in the plane z = 0.3 x + 0.2 y, over x from x0 to x1 and y from -20 to 20.
+Object slanted_rectangle(float x0, float x1) {
+    const auto corner = [](float x, float y) { return Vec3f{x, y, 0.3F * x + 0.2F * y}; };
+    return mesh_object({corner(x0, -20), corner(x1, -20), corner(x1, 20), corner(x0, 20)},
+                       {{0, 1, 2}, {0, 2, 3}});
+}
+
+TEST(CoincidentSurfaces, OfTwoObjectsShowOneLineWhereTheyPart) {
+    for (const double distance : {70.0, 100.0, 317.0}) {
+        Settings settings = plan_view({128, 64}, 2.0);
+        settings.view.orthographic.reset();
+        settings.view.eye = Vec3d{11, 23, distance};
+        set(settings, "lines", "intersection");
+        const Film film =
+            draw(Scene({slanted_rectangle(-40, 10), slanted_rectangle(-10.3F, 40)}), settings);
+        double rows = 0.0;
+        for (int y = 0; y < 64; ++y) {
+            double ink = 0.0;
+            int inked = 0;
+            for (int x = 0; x < 128; ++x) {
+                ink += static_cast<double>(plane(film, "line.A")[at({128, 64}, x, y)]);
+                inked += plane(film, "line.A")[at({128, 64}, x, y)] > 0.0F ? 1 : 0;
+            }
+            // One line crosses each row, or none does.
+            EXPECT_LT(ink, 2.7) << "row " << y << " from " << distance;
+            EXPECT_LE(inked, 5) << "row " << y << " from " << distance;
+            rows += ink > 1.0 ? 1 : 0;
+        }
+        EXPECT_GT(rows, 5) << distance;
+    }
+}
+
 /// A cube of side 2 as one glyph.
 Object box_glyph() {
     Object object;

@@ -1258,6 +1258,23 @@ TEST(Lines, AreTheSameHoweverTheLatticeIsCut) {
     }
 }
 
+/// Another surface behind a pinhole in the nearer one, just where a lattice point looks.
+TEST(Speck, ThatOneRayAloneSeesHasNoLine) {
+    const Vec3d hole{20.5, 24.5, 0};
+    const auto holed = [&](Surface surface) {
+        return Surface{surface.id, [=](double x, double y) -> std::optional<Hit> {
+                           if (std::hypot(x - hole.x, y - hole.y) < 0.004) return std::nullopt;
+                           return surface.at(x, y);
+                       }};
+    };
+    const Surface front = holed(plane(1, {24, 24, 0}, {0.1, 0.2, 1}));
+    for (const GeometryId id : {1U, 2U}) {
+        const Surface behind = plane(id, {24, 24, -5}, {0.1, 0.2, 1});
+        EXPECT_TRUE(search({{front, behind}}, 1).segments.empty());
+    }
+    EXPECT_TRUE(search({{front}}, 1).segments.empty());
+}
+
 // Ink
 
 TEST(Ink, OfTheNearerLineLiesOnTop) {

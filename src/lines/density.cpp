@@ -23,17 +23,15 @@ LineDensity::LineDensity(int x0, int y0, int x1, int y1, float widest)
       x1_(x1),
       y1_(y1),
       side_(std::max(kLeastSide, static_cast<int>(std::ceil(kWidths * widest)))),
-      i0_(floor_divide(x0, side_)),
-      j0_(floor_divide(y0, side_)),
-      across_(floor_divide(x1 - 1, side_) - i0_ + 1),
-      down_(floor_divide(y1 - 1, side_) - j0_ + 1),
+      i0_(floor_divide(x0, side_) - 1),
+      j0_(floor_divide(y0, side_) - 1),
+      across_(floor_divide(x1 - 1, side_) - i0_ + 2),
+      down_(floor_divide(y1 - 1, side_) - j0_ + 2),
       inked_(static_cast<std::size_t>(across_) * static_cast<std::size_t>(down_)) {}
 
 std::size_t LineDensity::square(int i, int j) const {
-    const int column = std::clamp(i - i0_, 0, across_ - 1);
-    const int row = std::clamp(j - j0_, 0, down_ - 1);
-    return static_cast<std::size_t>(row) * static_cast<std::size_t>(across_) +
-           static_cast<std::size_t>(column);
+    return static_cast<std::size_t>(j - j0_) * static_cast<std::size_t>(across_) +
+           static_cast<std::size_t>(i - i0_);
 }
 
 /// Of a square, as far as it was searched.
@@ -49,7 +47,10 @@ void LineDensity::add(const Segment& segment, float width) {
     const float inked = std::sqrt(d.x * d.x + d.y * d.y) * width;
     const auto column = static_cast<int>(std::floor(middle.x / static_cast<float>(side_)));
     const auto row = static_cast<int>(std::floor(middle.y / static_cast<float>(side_)));
-    inked_[square(column, row)] += static_cast<std::int64_t>(inked * kFixedPoint);
+    // Lines may end a hair outside of what was searched.
+    const int i = std::clamp(column, i0_, i0_ + across_ - 1);
+    const int j = std::clamp(row, j0_, j0_ + down_ - 1);
+    inked_[square(i, j)] += static_cast<std::int64_t>(inked * kFixedPoint);
 }
 
 LineDensity& LineDensity::operator+=(const LineDensity& other) {
@@ -57,25 +58,33 @@ LineDensity& LineDensity::operator+=(const LineDensity& other) {
     return *this;
 }
 
+void LineDensity::finish() {
+    squares_.resize(inked_.size());
+    for (int j = j0_; j < j0_ + down_; ++j) {
+        for (int i = i0_; i < i0_ + across_; ++i) {
+            const std::size_t k = square(i, j);
+            squares_[k] = {static_cast<float>(inked_[k]) / kFixedPoint, area(i, j)};
+        }
+    }
+}
+
 /// Between the middles of four squares, in proportion; squares cut by the border weigh less.
 float LineDensity::at(Vec2f point) const {
     const float x = point.x / static_cast<float>(side_) - 0.5F;
     const float y = point.y / static_cast<float>(side_) - 0.5F;
-    const float left = std::floor(x);
-    const float top = std::floor(y);
-    float inked = 0.0F;
-    float searched = 0.0F;
-    for (int n = 0; n < 4; ++n) {
-        const int i = static_cast<int>(left) + n % 2;
-        const int j = static_cast<int>(top) + n / 2;
-        const float covered = area(i, j);
-        if (covered == 0.0F) continue;
-        const float weight =
-            (n % 2 == 0 ? 1.0F - (x - left) : x - left) * (n / 2 == 0 ? 1.0F - (y - top) : y - top);
-        inked += weight * static_cast<float>(inked_[square(i, j)]) / kFixedPoint;
-        searched += weight * covered;
-    }
-    return searched > 0.0F ? inked / searched : 0.0F;
+    const int i = std::clamp(static_cast<int>(std::floor(x)), i0_, i0_ + across_ - 2);
+    const int j = std::clamp(static_cast<int>(std::floor(y)), j0_, j0_ + down_ - 2);
+    const float right = std::clamp(x - static_cast<float>(i), 0.0F, 1.0F);
+    const float below = std::clamp(y - static_cast<float>(j), 0.0F, 1.0F);
+    const Square* upper = &squares_[square(i, j)];
+    const Square* lower = upper + across_;
+    const auto mix = [&](float Square::*value) {
+        const float above = upper[0].*value + right * (upper[1].*value - upper[0].*value);
+        const float under = lower[0].*value + right * (lower[1].*value - lower[0].*value);
+        return above + below * (under - above);
+    };
+    const float searched = mix(&Square::searched);
+    return searched > 0.0F ? mix(&Square::inked) / searched : 0.0F;
 }
 
 float width_scale(float share, float most) {

@@ -23,19 +23,28 @@ class LineDensity {
 
     void add(const Segment& segment, float width);
     LineDensity& operator+=(const LineDensity& other);
+    /// To be called after the last of them, before `at`.
+    void finish();
 
     /// Covered share about a place, without end: 2 if lines lie side by side twice.
     float at(Vec2f point) const;
 
   private:
+    /// What a square adds to the shares of places near it.
+    struct Square {
+        float inked = 0.0F;     ///< square pixels
+        float searched = 0.0F;  ///< likewise
+    };
+
     std::size_t square(int i, int j) const;
     float area(int i, int j) const;
 
     int x0_ = 0, y0_ = 0, x1_ = 0, y1_ = 0;
     int side_ = 1;                     ///< of a square, pixels
-    int i0_ = 0, j0_ = 0;              ///< the first square
+    int i0_ = 0, j0_ = 0;              ///< the first square: one before the picture's
     int across_ = 0, down_ = 0;        ///< squares
     std::vector<std::int64_t> inked_;  ///< length times width, in 2^-20 square pixels
+    std::vector<Square> squares_;
 };
 
 /// By how much to scale the width of lines that would cover `share` of their surroundings so that

@@ -33,6 +33,13 @@ float smoothstep(float from, float to, float x) {
     return s * s * (3.0F - 2.0F * s);
 }
 
+/// Whether the surface itself does not turn. Where triangles coincide, rounding chooses between
+/// them, and their interpolated normals may differ without an edge.
+bool one_facet(const Sample& a, const Sample& b) {
+    constexpr float kOneDegree = 0.99985F;
+    return dot(a.facet, b.facet) > kOneDegree;
+}
+
 bool same_surface(const Sample& a, const Sample& b) { return a.id == b.id && a.ball == b.ball; }
 
 }  // namespace
@@ -60,6 +67,7 @@ void Locator::locate(const SampleGrid& grid, std::span<const SuspectEdge> edges,
         if (active_.empty()) break;
         step(sample);
     }
+    drop_specks(sample);
     refine_steep(sample);
 
     crossings.clear();
@@ -169,6 +177,7 @@ void Locator::check(std::size_t k, Vec2f point, const Sample& sample) {
     if (!as_first && !as_second) return split(k, point, sample);
     (as_second ? interval.b : interval.a) = point;
     (as_second ? interval.at_b : interval.at_a) = sample;
+    (as_second ? interval.b_moved : interval.a_moved) = true;
 }
 
 void Locator::narrow(std::size_t k, Vec2f point, const Sample& sample) {
@@ -187,6 +196,7 @@ void Locator::narrow(std::size_t k, Vec2f point, const Sample& sample) {
     }
     (keep_first_half ? interval.b : interval.a) = point;
     (keep_first_half ? interval.at_b : interval.at_a) = sample;
+    (keep_first_half ? interval.b_moved : interval.a_moved) = true;
     ++interval.steps;
     // Neither grows again as the interval shrinks.
     if (interval.suspicion != Suspicion::id && !has_jump(interval) && !has_crease(interval)) {
@@ -221,6 +231,7 @@ void Locator::split(std::size_t k, Vec2f point, const Sample& sample) {
     Interval second = first;
     first.b = second.a = point;
     first.at_b = second.at_a = sample;
+    first.b_moved = second.a_moved = true;
     if (first.steps == settings_.steps) first.state = second.state = State::located;
     // Once is enough: two lines within one lattice spacing are all that can be told apart.
     const bool may_split = first.may_split;
@@ -260,6 +271,37 @@ bool Locator::surfaces_meet(const Interval& interval) const {
     const float across = std::sqrt(std::max(dot(chord, chord) - along * along, 0.0F));
     const float slopes = slope(interval.at_a) + slope(interval.at_b) + 1.0F;
     return along <= settings_.meeting_slack * across * slopes;
+}
+
+/// Where all steps led to a lattice point, it may be the only one to see what it sees: a ray that
+/// slipped through a crack between triangles, or met one of two coincident surfaces by rounding.
+/// One more sample on its other side tells. Nothing narrower than two last intervals has a line.
+void Locator::drop_specks(const SampleFunction& sample) {
+    active_.clear();
+    points_.clear();
+    for (std::size_t k = 0; k < intervals_.size(); ++k) {
+        const Interval& interval = intervals_[k];
+        if (interval.state != State::located || interval.a_moved == interval.b_moved) continue;
+        active_.push_back(k);
+        const Vec2f step = interval.b - interval.a;
+        points_.push_back(interval.a_moved ? interval.b + step : interval.a - step);
+    }
+    samples_.resize(points_.size());
+    sample(points_, samples_);
+    for (std::size_t n = 0; n < active_.size(); ++n) {
+        Interval& interval = intervals_[active_[n]];
+        if (is_speck(interval, samples_[n])) interval.state = State::smooth;
+    }
+}
+
+/// Whether the sample beyond the lattice point goes on with the surface before it.
+bool Locator::is_speck(const Interval& interval, const Sample& beyond) const {
+    const Sample& before = interval.a_moved ? interval.at_a : interval.at_b;
+    if (beyond.id != before.id) return false;
+    if (interval.suspicion == Suspicion::id) return true;
+    const Sample& speck = interval.a_moved ? interval.at_b : interval.at_a;
+    return turn(before, beyond) < 0.5F * turn(before, speck) + 1e-3F &&
+           depth_jump(before, beyond) <= 0.5F * depth_jump(before, speck) + 1e-6F;
 }
 
 /// A front surface that turns away at its limb is so steep there that a small gap behind it could
@@ -313,7 +355,7 @@ bool Locator::classify(const Interval& interval, Crossing& crossing) const {
         crossing.type = ends_at_rim(interval) ? LineType::boundary : LineType::self_occlusion;
         return true;
     }
-    if (!has_crease(interval)) return false;
+    if (!has_crease(interval) || one_facet(a, b)) return false;
     crossing.type = LineType::crease;
     crossing.strength = crease_strength(2.0F * std::asin(std::min(0.5F * turn(a, b), 1.0F)));
     return true;

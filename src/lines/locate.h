@@ -89,6 +89,7 @@ class Locator {
         Sample at_a, at_b;
         Suspicion suspicion = Suspicion::id;
         bool may_split = true;
+        bool a_moved = false, b_moved = false;  ///< off the ends of the lattice edge
         std::uint32_t edge = 0;
         float first_jump = 0.0F, first_turn = 0.0F;  ///< between the edge's ends
         float gap = 0.0F, slope = 0.0F;              ///< where steep: before it was refined
@@ -105,6 +106,8 @@ class Locator {
     void check(std::size_t k, Vec2f point, const Sample& sample);
     void narrow(std::size_t k, Vec2f point, const Sample& sample);
     void split(std::size_t k, Vec2f point, const Sample& sample);
+    void drop_specks(const SampleFunction& sample);
+    bool is_speck(const Interval& interval, const Sample& beyond) const;
     void refine_steep(const SampleFunction& sample);
     bool surfaces_meet(const Interval& interval) const;
     bool has_jump(const Interval& interval) const;

@@ -144,6 +144,7 @@ RenderStats render_edges(const Pipeline& pipeline, const RenderControl& control)
     for (const auto& finder : finders) {
         if (finder) density += finder->density();
     }
+    density.finish();
     if (pipeline.lines.drawing != nullptr) keep_lines(edges, found, *pipeline.lines.drawing);
 
     std::vector<std::unique_ptr<LineDrawer>> drawers(pool);

@@ -27,6 +27,7 @@ struct Sample {
     Vec3f position;  ///< scene frame; unset on a miss
     Vec3f normal;    ///< shading normal, unit, faces the viewer; unset on a miss
     float t = 0.0F;  ///< distance along the ray from the plane on which all rays start, scene units
+    Vec3f facet{};   ///< geometric normal, unit, faces the viewer; zero where it is not known
     Ball ball{};
     /// Distance to the nearest open edge of the triangle that was hit, scene units; infinite where
     /// it has none.
@@ -54,7 +55,8 @@ struct Viewpoint {
 /// Asks for samples at points of the screen (pixels): as many out as in.
 using SampleFunction = std::function<void(std::span<const Vec2f> points, std::span<Sample> out)>;
 
-/// Adds to a sample of a grid, by its index, what the grid does not keep: ball and rim.
+/// Adds to a sample of a grid, by its index, what the grid does not keep: facet, ball
+/// and rim.
 using SurfaceFunction = std::function<void(std::size_t point, Sample& sample)>;
 
 /// Samples at the points of a regular lattice of q x q a pixel, plane by plane. Point (i, j) of the
@@ -88,7 +90,7 @@ struct SampleGrid {
         return {(static_cast<float>(x0 + i) + 0.5F) * spacing,
                 (static_cast<float>(y0 + j) + 0.5F) * spacing};
     }
-    /// Without ball and rim, which the grid does not keep.
+    /// Without facet, ball and rim, which the grid does not keep.
     Sample sample(std::size_t k) const {
         return {id[k], {px[k], py[k], pz[k]}, {nx[k], ny[k], nz[k]}, t[k]};
     }

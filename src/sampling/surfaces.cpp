@@ -65,6 +65,7 @@ double way_out_of_triangle(const Viewpoint& viewpoint, const Mesh& mesh,
 
 void Surfaces::describe(const HitPacket& hits, int lane, Sample& sample) const {
     if (hits.object[lane] == kNoObject) return;
+    sample.facet = hit_normal(hits, lane);
     const Shape& shape = scene_.objects()[hits.object[lane]].shape;
     if (const auto* spheres = std::get_if<Spheres>(&shape)) {
         const Sphere& sphere = spheres->spheres[hits.primitive[lane]];
