@@ -13,8 +13,8 @@ namespace ink {
 ///
 /// What chains of them may rely on: segments that go on from each other across the side of a cell
 /// share that end bit by bit, as do those that meet in a junction within a cell; only where a line
-/// ends on another, in front of it, does its end lie on the inside of the other segment. Each end on
-/// a cell's side is shared by exactly two segments, unless the line ends there. The order of
+/// ends on another, in front of it, does its end lie on the inside of the other segment. Each end
+/// on a cell's side is shared by exactly two segments, unless the line ends there. The order of
 /// segments, and which end is `a`, mean nothing.
 struct Segment {
     Vec2f a, b;  ///< ends, pixels

@@ -1,0 +1,126 @@
+#!/usr/bin/env python3
+"""Draws the results of inktrace-curves as SVG: plot_curves.py curves.json docs/images/"""
+
+import json
+import math
+import pathlib
+import sys
+
+WIDTH, HEIGHT, LEFT, BOTTOM, TOP, RIGHT = 460, 320, 62, 46, 34, 14
+INK = {"stencil": "#c8553d", "edges": "#1f5c99"}
+
+
+class LogLog:
+    """A diagram with logarithmic axes."""
+
+    def __init__(self, title, x_label, y_label, points, x0=0):
+        self.x0 = x0
+        self.range = [self._decades([p[axis] for p in points]) for axis in (0, 1)]
+        self.parts = []
+        self._text(x0 + WIDTH / 2, 18, title, "middle", 13)
+        self._text(x0 + (LEFT + WIDTH - RIGHT) / 2, HEIGHT - 8, x_label, "middle")
+        self._text(x0 + 14, HEIGHT / 2, y_label, "middle", turn=True)
+        for axis in (0, 1):
+            low, high = self.range[axis]
+            for decade in range(math.floor(low), math.ceil(high) + 1):
+                for step in (1, 2, 5):
+                    value = step * 10.0**decade
+                    if low - 1e-9 <= math.log10(value) <= high + 1e-9:
+                        self._grid(axis, value, step == 1)
+
+    @staticmethod
+    def _decades(values):
+        low, high = math.log10(min(values)), math.log10(max(values))
+        pad = max(0.08 * (high - low), 0.05)
+        return low - pad, high + pad
+
+    def place(self, x, y):
+        share = [(math.log10(v) - r[0]) / (r[1] - r[0]) for v, r in zip((x, y), self.range)]
+        return (
+            self.x0 + LEFT + share[0] * (WIDTH - LEFT - RIGHT),
+            HEIGHT - BOTTOM - share[1] * (HEIGHT - BOTTOM - TOP),
+        )
+
+    def _grid(self, axis, value, strong):
+        low = [10 ** r[0] for r in self.range]
+        high = [10 ** r[1] for r in self.range]
+        ends = [(value, low[1]), (value, high[1])] if axis == 0 else [(low[0], value), (high[0], value)]
+        (xa, ya), (xb, yb) = (self.place(*end) for end in ends)
+        color = "#bbb" if strong else "#e6e6e6"
+        self.parts.append(f'<path d="M{xa:.1f} {ya:.1f}L{xb:.1f} {yb:.1f}" stroke="{color}"/>')
+        label = f"{value:g}"
+        if axis == 0:
+            self._text(xa, HEIGHT - BOTTOM + 14, label, "middle", 10)
+        else:
+            self._text(self.x0 + LEFT - 5, ya + 3.5, label, "end", 10)
+
+    def _text(self, x, y, text, anchor, size=11, turn=False):
+        turned = f' transform="rotate(-90 {x} {y})"' if turn else ""
+        self.parts.append(
+            f'<text x="{x:.1f}" y="{y:.1f}" font-size="{size}" text-anchor="{anchor}"{turned}>{text}</text>'
+        )
+
+    def dot(self, x, y, color, label=""):
+        px, py = self.place(x, y)
+        self.parts.append(f'<circle cx="{px:.1f}" cy="{py:.1f}" r="3.5" fill="{color}"/>')
+        if label:
+            self._text(px + 6, py - 5, label, "start", 9)
+
+    def line(self, points, color):
+        path = "L".join(f"{px:.1f} {py:.1f}" for px, py in (self.place(*p) for p in points))
+        self.parts.append(f'<path d="M{path}" fill="none" stroke="{color}" stroke-width="1.5"/>')
+
+
+def write(file, diagrams):
+    width = WIDTH * len(diagrams)
+    body = "\n".join(part for diagram in diagrams for part in diagram.parts)
+    file.write_text(
+        f'<svg xmlns="http://www.w3.org/2000/svg" width="{width}" height="{HEIGHT}" '
+        f'viewBox="0 0 {width} {HEIGHT}" font-family="sans-serif">\n'
+        f'<rect width="{width}" height="{HEIGHT}" fill="#fff"/>\n{body}\n</svg>\n'
+    )
+    print(file)
+
+
+def frontier(rows):
+    diagrams = []
+    titles = {"linear": "Shading and soft lines, acetaminophen", "solid": "Solid line, one sphere"}
+    for k, profile in enumerate(titles):
+        chosen = [row for row in rows if row["profile"] == profile]
+        points = [(row["ms"], row["rmse"]) for row in chosen]
+        diagram = LogLog(titles[profile], "time, ms", "error (RMSE)", points, k * WIDTH)
+        for row in chosen:
+            name = row["way"].replace("stencil N", "N").replace("edges ", "")
+            name = name.replace("multisample:", "ms ").replace(" none", "")
+            diagram.dot(row["ms"], row["rmse"], INK[row["method"]], name)
+        diagrams.append(diagram)
+    return diagrams
+
+
+def growth(rows):
+    diagrams = []
+    titles = {"spheres": "number of spheres", "side": "side of the picture, pixels", "width": "width of lines, pixels"}
+    for k, along in enumerate(titles):
+        points = [(row["at"], row["ms"]) for row in rows if row["along"] == along]
+        if len(points) < 2:
+            continue
+        diagram = LogLog("", titles[along], "time, ms", points, k * WIDTH)
+        diagram.line(points, INK["edges"])
+        for point in points:
+            diagram.dot(*point, INK["edges"])
+        diagrams.append(diagram)
+    return diagrams
+
+
+def main():
+    if len(sys.argv) != 3:
+        sys.exit(__doc__)
+    results = json.loads(pathlib.Path(sys.argv[1]).read_text())
+    folder = pathlib.Path(sys.argv[2])
+    write(folder / "frontier.svg", frontier(results["frontier"]))
+    if results["growth"]:
+        write(folder / "growth.svg", growth(results["growth"]))
+
+
+if __name__ == "__main__":
+    main()
