@@ -32,7 +32,7 @@ class LogLog:
     def _decades(values):
         low, high = math.log10(min(values)), math.log10(max(values))
         pad = max(0.08 * (high - low), 0.05)
-        return low - pad, high + pad
+        return low - pad, high + 2 * pad  # room for labels
 
     def place(self, x, y):
         share = [(math.log10(v) - r[0]) / (r[1] - r[0]) for v, r in zip((x, y), self.range)]
