@@ -75,8 +75,8 @@ DisplayImage gradient(Size size) {
     return image;
 }
 
-std::vector<std::uint32_t> pixels_of(const std::vector<std::uint8_t>& bytes, int channels) {
-    std::vector<std::uint32_t> pixels;
+Pixels pixels_of(const std::vector<std::uint8_t>& bytes, int channels) {
+    Pixels pixels;
     const auto step = static_cast<std::size_t>(channels);
     for (std::size_t i = 0; i < bytes.size(); i += step)
         pixels.push_back(
@@ -427,7 +427,7 @@ TEST(Jpeg, ShowsWhiteWhereThePictureIsTransparent) {
     const fs::path file = folder.path() / "a.jpg";
     const Size size{16, 16};
     const auto mean_of = [&](std::uint32_t pixel) {
-        write_image(file, ImageFormat::jpeg, {size, std::vector(size.pixels(), pixel)}, kDpi, {});
+        write_image(file, ImageFormat::jpeg, {size, Pixels(size.pixels(), pixel)}, kDpi, {});
         return read_jpeg(file).image.pixels.front() & 0xFFU;
     };
     EXPECT_EQ(mean_of(rgba(0, 0, 0, 0)), 255U);

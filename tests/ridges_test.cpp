@@ -226,7 +226,7 @@ TEST(Ridges, DoNotDependOnTiles) {
     Settings settings;
     settings.size = {120, 100};
     settings.lines.add(LineType::ridge);
-    std::vector<std::vector<std::uint32_t>> pictures;
+    std::vector<Pixels> pictures;
     for (const int tile : {16, 64}) {
         settings.tile = tile;
         settings.threads = tile == 16 ? 1 : 2;

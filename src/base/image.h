@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <utility>
 #include <variant>
@@ -17,11 +18,30 @@ struct Size {
     friend constexpr bool operator==(Size, Size) = default;
 };
 
+/// Leaves what a vector makes uninitialised: pixels are written once, by the thread that computes
+/// them, and not filled with zeros by one thread before.
+template <class T>
+struct UninitializedAllocator : std::allocator<T> {
+    template <class U>
+    struct rebind {
+        using other = UninitializedAllocator<U>;
+    };
+    template <class U>
+    void construct(U* at) noexcept {
+        ::new (static_cast<void*>(at)) U;
+    }
+    template <class U, class... Arguments>
+    void construct(U* at, Arguments&&... arguments) {
+        ::new (static_cast<void*>(at)) U(std::forward<Arguments>(arguments)...);
+    }
+};
+using Pixels = std::vector<std::uint32_t, UninitializedAllocator<std::uint32_t>>;
+
 /// A finished picture for the screen: R, G, B, A bytes a pixel, rows from the top, sRGB-encoded
 /// colour, straight (not premultiplied) alpha.
 struct DisplayImage {
     Size size;
-    std::vector<std::uint32_t> pixels;  ///< R in the lowest byte
+    Pixels pixels;  ///< R in the lowest byte
 };
 
 /// One named plane of a float or integer image, rows from the top.

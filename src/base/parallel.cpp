@@ -38,6 +38,11 @@ void parallel_for(std::size_t count, int threads,
     });
 }
 
+void with_threads(int threads, const std::function<void()>& body) {
+    tbb::task_arena arena(threads == 0 ? hardware_threads() : threads);
+    arena.execute(body);
+}
+
 void parallel_ranges(std::size_t count, std::size_t grain,
                      const std::function<void(std::size_t, std::size_t)>& body) {
     tbb::parallel_for(

@@ -17,12 +17,16 @@ int hardware_threads();
 void parallel_for(std::size_t count, int threads,
                   const std::function<void(std::size_t i, std::size_t worker)>& body);
 
+/// Calls `body`, in which `parallel_ranges` and `parallel_sort` use up to `threads` threads (0: all
+/// of the machine's).
+void with_threads(int threads, const std::function<void()>& body);
+
 /// Cuts [0, count) into ranges of about `grain` and calls `body(begin, end)` for each, on all
-/// threads of the machine. Which ranges there are is not defined.
+/// threads of the machine unless told otherwise. Which ranges there are is not defined.
 void parallel_ranges(std::size_t count, std::size_t grain,
                      const std::function<void(std::size_t, std::size_t)>& body);
 
-/// Sorts ascending on all threads of the machine.
+/// Sorts ascending, on as many threads.
 void parallel_sort(std::vector<std::pair<std::uint64_t, std::uint32_t>>& keys);
 
 }  // namespace ink

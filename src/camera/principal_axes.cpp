@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numeric>
 #include <variant>
+#include <vector>
+
+#include "base/parallel.h"
 
 namespace ink {
 
@@ -12,36 +14,70 @@ namespace {
 
 using Matrix = std::array<std::array<double, 3>, 3>;
 
-Matrix covariance(const Scene& scene) {
+/// Where the mass of a scene is: the centres of all but its meshes.
+std::size_t centre_count(const Shape& shape) {
+    return std::holds_alternative<Mesh>(shape) ? 0 : primitive_count(shape);
+}
+
+Vec3d centre(const Spheres& shape, std::size_t i) { return to_double(shape.spheres[i].centre); }
+Vec3d centre(const Glyphs& shape, std::size_t i) { return to_double(shape.placements[i].origin); }
+Vec3d centre(const Hexahedra& shape, std::size_t i) {
+    return to_double(hexahedron_bounds(shape.corners[i]).centre());
+}
+Vec3d centre(const Mesh& /*shape*/, std::size_t /*i*/) { return {}; }
+
+/// Sum of `term(p)` over all centres. Chunks are summed in their order, so that the sum does not
+/// depend on threads.
+template <class Sum, class Term>
+Sum sum_over_centres(const Scene& scene, const Term& term) {
+    constexpr std::size_t kChunk = 1 << 15;
+    Sum total{};
+    for (const Object& object : scene.objects()) {
+        const std::size_t count = centre_count(object.shape);
+        std::vector<Sum> sums((count + kChunk - 1) / kChunk);
+        std::visit(
+            [&](const auto& shape) {
+                parallel_ranges(sums.size(), 1, [&](std::size_t begin, std::size_t end) {
+                    for (std::size_t i = begin * kChunk; i < std::min(end * kChunk, count); ++i) {
+                        sums[i / kChunk] += term(centre(shape, i));
+                    }
+                });
+            },
+            object.shape);
+        for (const Sum& sum : sums) total += sum;
+    }
+    return total;
+}
+
+struct Mean {
     Vec3d sum;
-    std::size_t count = 0;
-    const auto for_each_centre = [&](const auto& visit) {
-        for (const Object& object : scene.objects()) {
-            if (const auto* shape = std::get_if<Spheres>(&object.shape)) {
-                for (const Sphere& sphere : shape->spheres) visit(to_double(sphere.centre));
-            } else if (const auto* glyphs = std::get_if<Glyphs>(&object.shape)) {
-                for (const Placement& p : glyphs->placements) visit(to_double(p.origin));
-            } else if (const auto* solids = std::get_if<Hexahedra>(&object.shape)) {
-                for (const auto& corners : solids->corners) {
-                    visit(to_double(hexahedron_bounds(corners).centre()));
-                }
-            }
-        }
-    };
-    for_each_centre([&](Vec3d p) {
-        sum = sum + p;
-        ++count;
-    });
-    const Vec3d mean = sum / static_cast<double>(std::max<std::size_t>(count, 1));
-    Matrix m{};
-    for_each_centre([&](Vec3d p) {
+    double count = 0.0;
+
+    Mean& operator+=(const Mean& other) {
+        sum = sum + other.sum;
+        count += other.count;
+        return *this;
+    }
+};
+
+/// Upper triangle of a symmetric matrix, row by row.
+struct Moments {
+    std::array<double, 6> m{};
+
+    Moments& operator+=(const Moments& other) {
+        for (std::size_t k = 0; k < m.size(); ++k) m[k] += other.m[k];
+        return *this;
+    }
+};
+
+Matrix covariance(const Scene& scene) {
+    const auto all = sum_over_centres<Mean>(scene, [](Vec3d p) { return Mean{p, 1.0}; });
+    const Vec3d mean = all.sum / std::max(all.count, 1.0);
+    const auto [m] = sum_over_centres<Moments>(scene, [&](Vec3d p) {
         const Vec3d d = p - mean;
-        const std::array<double, 3> v{d.x, d.y, d.z};
-        for (std::size_t i = 0; i < 3; ++i) {
-            for (std::size_t j = 0; j < 3; ++j) m[i][j] += v[i] * v[j];
-        }
+        return Moments{{d.x * d.x, d.x * d.y, d.x * d.z, d.y * d.y, d.y * d.z, d.z * d.z}};
     });
-    return m;
+    return {{{m[0], m[1], m[2]}, {m[1], m[3], m[4]}, {m[2], m[4], m[5]}}};
 }
 
 /// Cyclic Jacobi rotations (Golub and Van Loan, Matrix Computations, 8.5): leaves the eigenvalues

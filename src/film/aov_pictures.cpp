@@ -38,7 +38,7 @@ std::uint32_t hashed_color(std::uint32_t id) {
 }
 
 DisplayImage id_picture(Size size, const std::vector<std::uint32_t>& ids) {
-    DisplayImage image{size, std::vector<std::uint32_t>(ids.size())};
+    DisplayImage image{size, Pixels(ids.size())};
     std::ranges::transform(ids, image.pixels.begin(), hashed_color);
     return image;
 }
@@ -61,7 +61,7 @@ Range finite_range(const Floats& values) {
 
 DisplayImage depth_picture(Size size, const Floats& depth) {
     const Range range = finite_range(depth);
-    DisplayImage image{size, std::vector<std::uint32_t>(depth.size())};
+    DisplayImage image{size, Pixels(depth.size())};
     std::ranges::transform(depth, image.pixels.begin(), [&](float z) {
         const float grey = 1.0F - 0.85F * range.share(z);
         return std::isfinite(z) ? pack(grey, grey, grey) : kBlack;
@@ -70,7 +70,7 @@ DisplayImage depth_picture(Size size, const Floats& depth) {
 }
 
 DisplayImage strength_picture(Size size, const Floats& strength) {
-    DisplayImage image{size, std::vector<std::uint32_t>(strength.size())};
+    DisplayImage image{size, Pixels(strength.size())};
     std::ranges::transform(strength, image.pixels.begin(),
                            [](float e) { return pack(1.0F - e, 1.0F - e, 1.0F - e); });
     return image;
@@ -79,7 +79,7 @@ DisplayImage strength_picture(Size size, const Floats& strength) {
 /// Three planes as red, green, blue, each mapped from `ranges` to [0, 1].
 DisplayImage vector_picture(Size size, const std::array<const Floats*, 3>& planes,
                             const std::array<Range, 3>& ranges) {
-    DisplayImage image{size, std::vector<std::uint32_t>(planes[0]->size())};
+    DisplayImage image{size, Pixels(planes[0]->size())};
     for (std::size_t i = 0; i < image.pixels.size(); ++i) {
         std::array<float, 3> v{};
         bool zero = true;

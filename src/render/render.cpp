@@ -47,11 +47,14 @@ Film render(const Scene& scene, const Tracer& tracer, const Settings& settings,
     std::optional<Timer> timer(render_ms);
     validate(settings);
     Film film(settings.size, film_settings(settings, formats));
-    const Pipeline pipeline(scene, tracer, settings, film,
-                            {.ink = formats.lines && settings.draws_lines(), .drawing = drawing});
-    RenderStats result;
-    result =
-        pipeline.locates() ? render_edges(pipeline, control) : render_stencils(pipeline, control);
+    std::optional<Pipeline> pipeline;
+    with_threads(settings.threads, [&] {
+        pipeline.emplace(
+            scene, tracer, settings, film,
+            LineOutput{.ink = formats.lines && settings.draws_lines(), .drawing = drawing});
+    });
+    RenderStats result = pipeline->locates() ? render_edges(*pipeline, control)
+                                             : render_stencils(*pipeline, control);
     timer.reset();
     result.render_ms = render_ms;
     if (stats != nullptr) *stats = result;
