@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 
 #include "base/error.h"
@@ -192,15 +193,23 @@ void MoleculeBuilder::complete_residues() {
     }
     if (has_entities_) return;
     std::map<std::string, std::uint32_t> entity_of_sequence;
+    // A sequence is as long as its chain: it is looked up once a chain, not once a residue.
+    constexpr auto kNone = std::numeric_limits<std::uint32_t>::max();
+    std::vector<std::uint32_t> entity_of_chain(sequences.size(), kNone);
     for (Residue& residue : molecule_.residue_table) {
         if (!is_linked(residue)) {
             residue.entity = index_of(residue.name, entity_by_name_, molecule_.entities);
             continue;
         }
-        const auto next = static_cast<std::uint32_t>(molecule_.entities.size());
-        const auto [entry, is_new] = entity_of_sequence.try_emplace(sequences[residue.chain], next);
-        if (is_new) molecule_.entities.push_back("chain " + molecule_.chains[residue.chain]);
-        residue.entity = entry->second;
+        std::uint32_t& entity = entity_of_chain[residue.chain];
+        if (entity == kNone) {
+            const auto next = static_cast<std::uint32_t>(molecule_.entities.size());
+            const auto [entry, is_new] =
+                entity_of_sequence.try_emplace(sequences[residue.chain], next);
+            if (is_new) molecule_.entities.push_back("chain " + molecule_.chains[residue.chain]);
+            entity = entry->second;
+        }
+        residue.entity = entity;
     }
 }
 
