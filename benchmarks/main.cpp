@@ -14,6 +14,7 @@
 #include "bare_loop.h"
 #include "camera/camera.h"
 #include "io/reader.h"
+#include "readers.h"
 #include "render/render.h"
 #include "scenes.h"
 
@@ -149,13 +150,25 @@ int main(int argc, char** argv) {
     int rounds = 7;
     int threads = 2;
     bool stencils = true;
+    double readers_mb = 0.0;
     app.add_option("FILE", files, "Scenes to measure beside the built-in ones");
     app.add_option("--json", json_file, "Write the results as JSON");
     app.add_option("--side", side, "Pixels of the square picture's side [1024]");
     app.add_option("--rounds", rounds, "Rounds to take the median of [7]");
     app.add_option("--threads", threads, "Threads to compare with one [2]");
     app.add_flag("!--no-stencils", stencils, "Only frames without lines");
+    app.add_option("--readers", readers_mb,
+                   "Measure reading files of this many megabytes instead, one of each format")
+        ->check(CLI::Range(1.0, 4000.0));
     CLI11_PARSE(app, argc, argv);
+    if (readers_mb > 0.0) {
+        for (const ReaderRow& row : measure_readers(readers_mb)) {
+            fmt::print("{:<10}{:>8.1f} MB{:>9.0f} MB/s\n", row.format, row.megabytes,
+                       row.megabytes_per_second);
+            std::fflush(stdout);
+        }
+        return 0;
+    }
 
     std::vector<NamedScene> scenes;
     try {
