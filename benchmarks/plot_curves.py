@@ -64,7 +64,10 @@ class LogLog:
         px, py = self.place(x, y)
         self.parts.append(f'<circle cx="{px:.1f}" cy="{py:.1f}" r="3.5" fill="{color}"/>')
         if label:
-            self._text(px + 6, py - 5, label, "start", 9)
+            # Stencils with and without averaged colours can give the same lines: one label above
+            # the dot, one below.
+            below = label.endswith("stencil")
+            self._text(px, py + (16 if below else -7), label, "middle", 9)
 
     def line(self, points, color):
         path = "L".join(f"{px:.1f} {py:.1f}" for px, py in (self.place(*p) for p in points))
@@ -117,6 +120,7 @@ def main():
         sys.exit(__doc__)
     results = json.loads(pathlib.Path(sys.argv[1]).read_text())
     folder = pathlib.Path(sys.argv[2])
+    folder.mkdir(parents=True, exist_ok=True)
     write(folder / "frontier.svg", frontier(results["frontier"]))
     if results["growth"]:
         write(folder / "growth.svg", growth(results["growth"]))

@@ -30,7 +30,7 @@ extern "C" void end_cleanly(int signal) {
 std::string formats() {
     std::string text = "Reads (all of them also compressed, as .gz):";
     for (const auto& [name, extensions] : inktrace::input_formats()) {
-        text += fmt::format("\n  {:<8}{}", name, extensions);
+        text += fmt::format("\n  {:<13}{}", name, extensions);
     }
     return text;
 }
