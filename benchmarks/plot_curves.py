@@ -64,10 +64,7 @@ class LogLog:
         px, py = self.place(x, y)
         self.parts.append(f'<circle cx="{px:.1f}" cy="{py:.1f}" r="3.5" fill="{color}"/>')
         if label:
-            # Stencils with and without averaged colours can give the same lines: one label above
-            # the dot, one below.
-            below = label.endswith("stencil")
-            self._text(px, py + (16 if below else -7), label, "middle", 9)
+            self._text(px + 6, py - 5, label, "start", 9)
 
     def line(self, points, color):
         path = "L".join(f"{px:.1f} {py:.1f}" for px, py in (self.place(*p) for p in points))
@@ -89,7 +86,12 @@ def frontier(rows):
     diagrams = []
     titles = {"linear": "Shading and soft lines, acetaminophen", "solid": "Solid line, one sphere"}
     for k, profile in enumerate(titles):
-        chosen = [row for row in rows if row["profile"] == profile]
+        # Solid lines are the same whether colours are averaged over the stencil or not.
+        chosen = [
+            row
+            for row in rows
+            if row["profile"] == profile and not (profile == "solid" and row["way"].endswith(" stencil"))
+        ]
         points = [(row["ms"], row["rmse"]) for row in chosen]
         diagram = LogLog(titles[profile], "time, ms", "error (RMSE)", points, k * WIDTH)
         for row in chosen:
