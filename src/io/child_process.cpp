@@ -23,6 +23,13 @@ namespace {
 constexpr int kOutOfMemory = 3;
 constexpr int kFailed = 4;
 
+/// The address sanitizer maps terabytes for itself.
+#ifdef __SANITIZE_ADDRESS__
+constexpr bool kSanitized = true;
+#else
+constexpr bool kSanitized = false;
+#endif
+
 std::size_t mapped_bytes() {
     std::size_t pages = 0;
     if (FILE* const statm = std::fopen("/proc/self/statm", "r")) {
@@ -41,9 +48,7 @@ void limit(int resource, std::size_t most) {
 void apply(const ChildLimits& limits) {
     limit(RLIMIT_CORE, 0);
     limit(RLIMIT_CPU, static_cast<std::size_t>(limits.cpu_seconds));
-#ifndef __SANITIZE_ADDRESS__
-    limit(RLIMIT_AS, mapped_bytes() + limits.memory_bytes);
-#endif
+    if (!kSanitized) limit(RLIMIT_AS, mapped_bytes() + limits.memory_bytes);
     // What the program does at an interrupt is not for the child to do.
     for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGPIPE}) std::signal(signal, SIG_DFL);
 }
