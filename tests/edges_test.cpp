@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "base/error.h"
+#include "drawing.h"
 #include "io/reader.h"
 #include "lines/coverage.h"
 #include "render/render.h"
@@ -23,18 +24,6 @@ namespace ink::test {
 namespace {
 
 constexpr double kDegrees = std::numbers::pi / 180.0;
-
-Film draw(const Scene& scene, const Settings& settings, const PixelFormats& formats = {}) {
-    const auto tracer = make_tracer(scene);
-    return render(scene, *tracer, settings, formats);
-}
-
-const std::vector<float>& plane(const Film& film, std::string_view name) {
-    for (const Channel& channel : film.channels().channels) {
-        if (channel.name == name) return std::get<std::vector<float>>(channel.values);
-    }
-    throw std::logic_error("no such plane");
-}
 
 /// Orthographic, straight on, one scene unit a pixel, the origin in the middle of the picture.
 Settings plan_view(Size size, double width_px = 3.0) {

@@ -6,6 +6,7 @@
 #include "base/error.h"
 #include "io/molecule_file.h"
 #include "io/reader.h"
+#include "read_contents.h"
 #include "scene/elements.h"
 #include "test_files.h"
 
@@ -13,35 +14,10 @@ namespace ink {
 namespace {
 
 using test::data_file;
+using test::expect_refused;
+using test::positions;
+using test::spheres;
 using test::TemporaryFolder;
-
-const Spheres& spheres(const FileContents& contents) {
-    return std::get<Spheres>(contents.objects.at(0).shape);
-}
-
-std::vector<Vec3d> positions(const FileContents& contents) {
-    std::vector<Vec3d> out;
-    for (const Sphere& sphere : spheres(contents).spheres) {
-        out.push_back(contents.objects[0].frame.to_world(sphere.centre));
-    }
-    return out;
-}
-
-std::string refusal(const std::filesystem::path& file, const ReadOptions& options = {}) {
-    try {
-        read_file(file, options);
-    } catch (const InputError& error) {
-        return error.what();
-    }
-    return "(it was read)";
-}
-
-void expect_refused(const std::filesystem::path& file, std::string_view problem,
-                    const ReadOptions& options = {}) {
-    const std::string message = refusal(file, options);
-    EXPECT_NE(message.find(file.string()), std::string::npos) << message;
-    EXPECT_NE(message.find(problem), std::string::npos) << message;
-}
 
 // ---- Elements from names ----
 

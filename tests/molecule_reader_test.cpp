@@ -8,6 +8,7 @@
 #include "base/error.h"
 #include "io/file_text.h"
 #include "io/reader.h"
+#include "read_contents.h"
 #include "scene/elements.h"
 #include "test_files.h"
 
@@ -15,11 +16,8 @@ namespace ink {
 namespace {
 
 using test::data_file;
+using test::spheres;
 using test::TemporaryFolder;
-
-const Spheres& spheres(const FileContents& contents) {
-    return std::get<Spheres>(contents.objects.at(0).shape);
-}
 
 std::uint64_t count(const FileContents& contents, std::string_view what) {
     for (const auto& [name, value] : contents.counts) {

@@ -7,23 +7,12 @@
 #include <variant>
 
 #include "base/error.h"
+#include "drawing.h"
 #include "lines/strength.h"
 #include "scenes.h"
 
 namespace ink::test {
 namespace {
-
-Film draw(const Scene& scene, const Settings& settings, const PixelFormats& formats = {}) {
-    const auto tracer = make_tracer(scene);
-    return render(scene, *tracer, settings, formats);
-}
-
-const std::vector<float>& plane(const Film& film, std::string_view name) {
-    for (const Channel& channel : film.channels().channels) {
-        if (channel.name == name) return std::get<std::vector<float>>(channel.values);
-    }
-    throw std::logic_error("no such plane");
-}
 
 /// Orthographic, straight on, one scene unit a pixel, the origin in the middle of the picture.
 Settings plan_view(Size size) {

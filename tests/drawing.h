@@ -1,0 +1,26 @@
+#pragma once
+
+#include <stdexcept>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "accel/tracer.h"
+#include "render/render.h"
+
+namespace ink::test {
+
+inline Film draw(const Scene& scene, const Settings& settings, const PixelFormats& formats = {}) {
+    const auto tracer = make_tracer(scene);
+    return render(scene, *tracer, settings, formats);
+}
+
+/// A float plane of a film by its channel's name.
+inline const std::vector<float>& plane(const Film& film, std::string_view name) {
+    for (const Channel& channel : film.channels().channels) {
+        if (channel.name == name) return std::get<std::vector<float>>(channel.values);
+    }
+    throw std::logic_error("no such plane");
+}
+
+}  // namespace ink::test
