@@ -38,3 +38,11 @@ function(inktrace_layer name)
         target_include_directories(${name} INTERFACE ${PROJECT_SOURCE_DIR}/src)
     endif()
 endfunction()
+
+# inktrace_compile_fast(TARGET): for code that is compiled more often than it runs (tests, the
+# command line), where optimising takes half of the build and gains nothing.
+function(inktrace_compile_fast target)
+    if(NOT INKTRACE_SANITIZE)
+        target_compile_options(${target} PRIVATE -O1)
+    endif()
+endfunction()
