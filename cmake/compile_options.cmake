@@ -11,9 +11,6 @@ target_compile_options(inktrace_options INTERFACE
     -fno-math-errno -fno-trapping-math
     -Wall -Wextra -Wpedantic -Wconversion -Wshadow
     $<$<BOOL:${INKTRACE_WERROR}>:-Werror>)
-if(CMAKE_BUILD_TYPE STREQUAL "Release")
-    target_compile_options(inktrace_options INTERFACE -O3)
-endif()
 if(INKTRACE_SANITIZE)
     target_compile_options(inktrace_options INTERFACE
         -fsanitize=${INKTRACE_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer -O1

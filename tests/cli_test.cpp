@@ -30,6 +30,7 @@
 #include <vector>
 
 #include "inktrace/inktrace.h"
+#include "paths.h"
 #include "test_files.h"
 
 namespace ink::test {
@@ -38,7 +39,7 @@ namespace {
 namespace fs = std::filesystem;
 using Arguments = std::vector<std::string>;
 
-const std::string kSample = INKTRACE_SOURCE_DIR "/samples/acetaminophen.xyz";
+const std::string kSample = (ink::test::source_dir() / "samples/acetaminophen.xyz").string();
 constexpr std::string_view kXyz = "2\ncarbon monoxide\nC 0 0 0\nO 0 1.2 0\n";
 constexpr std::string_view kStl =
     "solid pair\n"
@@ -142,7 +143,7 @@ class Program {
         std::vector<char*> argv{name.data()};
         for (std::string& argument : copy) argv.push_back(argument.data());
         argv.push_back(nullptr);
-        execv(INKTRACE_BINARY, argv.data());
+        execv(ink::test::program().c_str(), argv.data());
         _exit(127);
     }
 

@@ -17,6 +17,7 @@
 #include "drawing.h"
 #include "io/reader.h"
 #include "lines/coverage.h"
+#include "paths.h"
 #include "render/render.h"
 #include "scenes.h"
 
@@ -44,8 +45,7 @@ void set(Settings& settings, std::string_view name, std::string_view value) {
 }
 
 Scene acetaminophen() {
-    return Scene(
-        read_file(std::string(INKTRACE_SOURCE_DIR) + "/samples/acetaminophen.xyz").objects);
+    return Scene(read_file(source_dir() / "samples/acetaminophen.xyz").objects);
 }
 
 std::size_t at(Size size, int x, int y) {

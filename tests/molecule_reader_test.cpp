@@ -8,6 +8,7 @@
 #include "base/error.h"
 #include "io/file_text.h"
 #include "io/reader.h"
+#include "paths.h"
 #include "read_contents.h"
 #include "scene/elements.h"
 #include "test_files.h"
@@ -619,7 +620,7 @@ TEST(RealMolecules, AreRefusedWithAMessageWhereBroken) {
 }
 
 TEST(RealMolecules, IncludeTheSample) {
-    const std::filesystem::path sample = INKTRACE_SOURCE_DIR "/samples/acetaminophen.xyz";
+    const std::filesystem::path sample = test::source_dir() / "samples/acetaminophen.xyz";
     const FileContents contents = read_file(sample);
     EXPECT_EQ(count(contents, "atoms"), 20u);
     // Centred, long axis along x, ring facing z.

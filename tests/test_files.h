@@ -7,6 +7,8 @@
 #include <string>
 #include <string_view>
 
+#include "paths.h"
+
 namespace ink::test {
 
 /// A folder of its own for one test, removed with it.
@@ -37,8 +39,6 @@ inline std::string read_bytes(const std::filesystem::path& file) {
 }
 
 /// A real data file; check `exists` and GTEST_SKIP where it is not on this machine.
-inline std::filesystem::path data_file(std::string_view name) {
-    return std::filesystem::path(INKTRACE_DATA_DIR) / name;
-}
+inline std::filesystem::path data_file(std::string_view name) { return data_dir() / name; }
 
 }  // namespace ink::test

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "io/reader.h"
+#include "paths.h"
 #include "render/render.h"
 #include "scenes.h"
 #include "test_files.h"
@@ -40,8 +41,7 @@ Drawn draw(const Scene& scene, const Settings& settings, bool inked = false) {
 }
 
 Scene acetaminophen() {
-    return Scene(
-        read_file(std::string(INKTRACE_SOURCE_DIR) + "/samples/acetaminophen.xyz").objects);
+    return Scene(read_file(source_dir() / "samples/acetaminophen.xyz").objects);
 }
 
 Settings picture(int side = 512) {

@@ -13,6 +13,7 @@
 #include "commands.h"
 #include "inktrace/inktrace.h"
 #include "messages.h"
+#include "scenes_dir.h"
 
 namespace inktrace::cli {
 
@@ -37,7 +38,7 @@ constexpr PaperTable kTable1{{{24.3, 3.1, 1.9, 1.0}, {0, 2.1, 0.9, 0.4}, {0, 0.4
 constexpr PaperTable kTable2{{{147.0, 30.1, 14.3, 7.8}, {0, 16.7, 6.8, 3.5}, {0, 3.5, 0.6, 0.2}}};
 
 struct BenchArguments {
-    std::string input = INKTRACE_SCENES_DIR "/figure1.json";
+    std::string input = scenes_dir() + "/figure1.json";
     std::string json;
     std::string size = "512x512";
     int threads = 0;

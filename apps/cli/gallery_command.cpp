@@ -12,6 +12,7 @@
 #include "commands.h"
 #include "inktrace/inktrace.h"
 #include "messages.h"
+#include "scenes_dir.h"
 
 namespace inktrace::cli {
 
@@ -163,7 +164,7 @@ void add_knot(Scene& scene) {
 
 struct GalleryArguments {
     std::string output;
-    std::string scenes = INKTRACE_SCENES_DIR;
+    std::string scenes = scenes_dir();
     std::string mesh;
     int threads = 0;
     bool quiet = false;
