@@ -260,7 +260,8 @@ void take_scene_settings(const CLI::App& command, RenderArguments& arguments) {
     if (!any) return;
     for (const SettingInfo& info : all_settings()) {
         const CLI::Option* flag = command.get_option_no_throw("--" + info.name);
-        if (flag != nullptr && flag->count() > 0) settings.set(info.name, flag->results().back());
+        if (flag == nullptr || flag->count() == 0) continue;
+        for (const std::string& value : flag->results()) settings.set(info.name, value);
     }
     arguments.settings = settings;
 }

@@ -1,14 +1,17 @@
 #pragma once
 
+#include <array>
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "inktrace/lines.h"
@@ -86,6 +89,18 @@ void check_output(const std::filesystem::path& file);
 /// picture that does not fit into memory: worth asking before a large scene is loaded.
 void validate(const Settings& settings, const RenderOptions& options = {});
 
+/// What lies under a point of a picture.
+struct Hit {
+    std::string object;                ///< name of the molecule, mesh or particle set
+    std::string kind;                  ///< "atom", "particle", "triangle" or "shape"
+    std::size_t object_number = 1;     ///< in the scene, from 1, as in `--line TYPE@K:...`
+    std::size_t primitive = 0;         ///< in its object, from 0
+    std::array<double, 3> position{};  ///< on the surface, in the units of the file
+    std::array<double, 3> center{};    ///< of the sphere; of anything else the position
+    /// Names and values: part, and what the file says where `LoadOptions::facts` kept it.
+    std::vector<std::pair<std::string, std::string>> facts;
+};
+
 /// A scene made ready for rays. Build it once, render it often.
 class Renderer {
   public:
@@ -104,6 +119,10 @@ class Renderer {
 
     /// The same scene and settings give the same bytes. Throws Error.
     Picture render(const Settings& settings, const RenderOptions& options = {}) const;
+
+    /// What the ray through a point of the picture meets: pixels, x right, y down, from its upper
+    /// left corner. Nothing where that is the background. Throws Error.
+    std::optional<Hit> pick(const Settings& settings, double x, double y) const;
 
     double build_ms() const;  ///< that the constructor took
 

@@ -39,6 +39,13 @@ struct FileInfo {
     std::vector<std::string> warnings;  ///< what was left out or guessed
 };
 
+/// What loading keeps beside what is drawn.
+struct LoadOptions {
+    /// What the file says about each atom and particle, for `Renderer::pick`: memory in proportion
+    /// to the file.
+    bool facts = false;
+};
+
 /// Molecules, meshes and spheres to draw together.
 class Scene {
   public:
@@ -53,7 +60,8 @@ class Scene {
     FileInfo load(const std::filesystem::path& file, int frame = 0);
     /// The same, by settings of topic "Input": frame, selection, colours and so on. Throws Error
     /// (input) also where they name what the file does not have.
-    FileInfo load(const std::filesystem::path& file, const Settings& settings);
+    FileInfo load(const std::filesystem::path& file, const Settings& settings,
+                  const LoadOptions& options = {});
 
     /// Adds spheres: x, y, z, radius of each, and either no colours or r, g, b (0 to 255, sRGB) of
     /// each. Values must be finite and radii positive, else Error (input).

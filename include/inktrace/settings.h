@@ -8,6 +8,23 @@
 
 namespace inktrace {
 
+/// What a value may be, as user interfaces offer it. `Settings::set` has the last word.
+struct ValueForm {
+    enum class Kind {
+        text,    ///< anything, or one of `words`
+        word,    ///< one of `words`
+        list,    ///< some of `words`, with commas between; none; all
+        whole,   ///< a whole number from `least` to `most`
+        number,  ///< from `least` to `most`
+        length,  ///< a number from `least` to `most` pixels, or in pt, mm or %
+        color    ///< a name or #rrggbb
+    };
+    Kind kind = Kind::text;
+    std::vector<std::string> words{};
+    double least = 0.0;
+    double most = 0.0;  ///< what is usual: more may be allowed
+};
+
 /// One setting, as help and user interfaces show it.
 struct SettingInfo {
     std::string name;           ///< "line-width"; on the command line "--line-width"
@@ -16,6 +33,7 @@ struct SettingInfo {
     std::string help;           ///< one sentence, no full stop
     std::string default_value;  ///< in the form that `Settings::set` reads; empty: automatic
     bool repeatable = false;    ///< `set` adds to earlier values; an empty one clears them
+    ValueForm form{};
 };
 
 /// All settings, grouped by topic.
@@ -41,6 +59,10 @@ class Settings {
     std::string get(std::string_view name) const;
     /// Names and values of the settings that differ from their defaults.
     std::vector<std::pair<std::string, std::string>> changed() const;
+
+    /// The same picture at `factor` times the size: lengths that are given in pixels, and those in
+    /// points and millimetres, grow with it.
+    Settings scaled(double factor) const;
 
     struct Impl;
     const Impl& impl() const { return *impl_; }

@@ -9,6 +9,7 @@
 #include "camera/views.h"
 #include "inktrace/inktrace.h"
 #include "io/atomic_file.h"
+#include "render/pick.h"
 #include "render/pipeline.h"
 #include "render/render.h"
 #include "vector/line_art.h"
@@ -100,6 +101,22 @@ Settings Renderer::with_turned_camera(const Settings& settings, double turn_deg)
         const ink::Settings& inner = settings.impl().settings;
         return with_view(settings,
                          ink::turntable_view(impl_->scene, inner.view, inner.size, turn_deg));
+    });
+}
+
+std::optional<Hit> Renderer::pick(const Settings& settings, double x, double y) const {
+    return ink::guard([&]() -> std::optional<Hit> {
+        const auto found = ink::pick(impl_->scene, *impl_->tracer, settings.impl().settings,
+                                     {static_cast<float>(x), static_cast<float>(y)});
+        if (!found) return std::nullopt;
+        const auto array = [](ink::Vec3d v) { return std::array{v.x, v.y, v.z}; };
+        return Hit{.object = impl_->scene.objects()[found->object].name,
+                   .kind = std::string(found->kind),
+                   .object_number = found->object + 1,
+                   .primitive = found->primitive,
+                   .position = array(found->position),
+                   .center = array(found->center),
+                   .facts = found->facts};
     });
 }
 

@@ -126,10 +126,11 @@ FileInfo describe(const std::filesystem::path& file, const ink::FileContents& co
 }
 
 ink::FileContents read_any(const std::filesystem::path& file, const ink::Settings& settings,
-                           bool summarize) {
-    if (ink::is_scene_file(file)) return ink::read_scene_file(file, settings);
-    return ink::read_file(file,
-                          {.frame = settings.frame, .data = settings.data, .summarize = summarize});
+                           bool summarize, bool facts) {
+    if (ink::is_scene_file(file)) return ink::read_scene_file(file, settings, facts);
+    return ink::read_file(
+        file,
+        {.frame = settings.frame, .data = settings.data, .summarize = summarize, .facts = facts});
 }
 
 }  // namespace
@@ -143,10 +144,11 @@ FileInfo Scene::load(const std::filesystem::path& file, int frame) {
     return load(file, Settings().set("frame", std::to_string(frame)));
 }
 
-FileInfo Scene::load(const std::filesystem::path& file, const Settings& settings) {
+FileInfo Scene::load(const std::filesystem::path& file, const Settings& settings,
+                     const LoadOptions& options) {
     return ink::guard([&] {
         const ink::Settings& inner = settings.impl().settings;
-        ink::FileContents contents = read_any(file, inner, false);
+        ink::FileContents contents = read_any(file, inner, false, options.facts);
         FileInfo info = describe(file, contents);
         std::ranges::move(contents.objects, std::back_inserter(impl_->objects));
         return info;
@@ -171,7 +173,7 @@ std::size_t Scene::primitive_count() const {
 
 FileInfo inspect(const std::filesystem::path& file, const Settings& settings) {
     return ink::guard(
-        [&] { return describe(file, read_any(file, settings.impl().settings, true)); });
+        [&] { return describe(file, read_any(file, settings.impl().settings, true, false)); });
 }
 
 std::vector<std::pair<std::string, std::string>> input_formats() {

@@ -50,7 +50,8 @@ T read_word(const JsonNode& node, const std::vector<std::pair<std::string_view, 
 
 class SceneReader {
   public:
-    SceneReader(const JsonNode& root, const Settings& settings) : root_(root), settings_(settings) {
+    SceneReader(const JsonNode& root, const Settings& settings, bool facts)
+        : root_(root), settings_(settings), facts_(facts) {
         root.allow_only({"inktrace", "settings", "materials", "objects", "description"});
         if (const auto version = root.find("inktrace")) {
             if (version->number(0, 1e9) != 1) {
@@ -136,7 +137,8 @@ class SceneReader {
         std::filesystem::path file = name.text();
         if (file.is_relative()) file = root_.file().parent_path() / file;
         if (is_scene_file(file)) name.fail("is a scene; a scene cannot hold another one");
-        FileContents read = read_file(file, {.frame = settings.frame, .data = settings.data});
+        FileContents read =
+            read_file(file, {.frame = settings.frame, .data = settings.data, .facts = facts_});
         std::ranges::move(read.warnings, std::back_inserter(contents_.warnings));
         const auto shift = node.find("translate");
         const auto scale = node.find("scale");
@@ -178,6 +180,7 @@ class SceneReader {
 
     const JsonNode& root_;
     const Settings& settings_;
+    bool facts_;
     FileContents contents_;
 };
 
@@ -203,10 +206,11 @@ std::vector<std::pair<std::string, std::string>> read_scene_settings(
     return list;
 }
 
-FileContents read_scene_file(const std::filesystem::path& file, const Settings& settings) {
+FileContents read_scene_file(const std::filesystem::path& file, const Settings& settings,
+                             bool facts) {
     const JsonValue document = read_json(file);
     const JsonNode root(file, document);
-    return SceneReader(root, settings).read();
+    return SceneReader(root, settings, facts).read();
 }
 
 }  // namespace ink

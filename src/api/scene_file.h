@@ -20,6 +20,8 @@ std::vector<std::pair<std::string, std::string>> read_scene_settings(
 
 /// The objects of a scene file (docs/scene-file.md). Files that it names are read by `settings`,
 /// where an object says nothing else. Throws InputError with line and key.
-FileContents read_scene_file(const std::filesystem::path& file, const Settings& settings);
+/// With `facts`, what they say about each atom and particle is kept.
+FileContents read_scene_file(const std::filesystem::path& file, const Settings& settings,
+                             bool facts = false);
 
 }  // namespace ink

@@ -1,9 +1,26 @@
 #include "inktrace/settings.h"
 
+#include <array>
+
 #include "api/guard.h"
 #include "api/impl.h"
+#include "render/scaled.h"
 
 namespace inktrace {
+
+namespace {
+
+ValueForm public_form(const ink::ValueForm& form) {
+    using Kind = ValueForm::Kind;
+    constexpr std::array kKinds{Kind::text,   Kind::word,   Kind::list, Kind::whole,
+                                Kind::number, Kind::length, Kind::color};
+    return {kKinds[static_cast<std::size_t>(form.kind)],
+            {form.words.begin(), form.words.end()},
+            form.least,
+            form.most};
+}
+
+}  // namespace
 
 const std::vector<SettingInfo>& all_settings() {
     static const std::vector<SettingInfo> kInfos = [] {
@@ -11,7 +28,8 @@ const std::vector<SettingInfo>& all_settings() {
         std::vector<SettingInfo> infos;
         for (const ink::Setting& row : ink::settings_table()) {
             infos.push_back({std::string(row.name), std::string(row.topic), std::string(row.value),
-                             std::string(row.help), row.get(defaults), row.repeatable});
+                             std::string(row.help), row.get(defaults), row.repeatable,
+                             public_form(row.form)});
         }
         return infos;
     }();
@@ -35,6 +53,12 @@ Settings& Settings::set(std::string_view name, std::string_view value) {
 
 std::string Settings::get(std::string_view name) const {
     return ink::guard([&] { return ink::find_setting(name).get(impl_->settings); });
+}
+
+Settings Settings::scaled(double factor) const {
+    Settings copy;
+    copy.impl_->settings = ink::scaled(impl_->settings, factor);
+    return copy;
 }
 
 std::vector<std::pair<std::string, std::string>> Settings::changed() const {

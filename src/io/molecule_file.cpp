@@ -11,6 +11,7 @@
 #include "base/text.h"
 #include "io/file_text.h"
 #include "scene/elements.h"
+#include "scene/facts.h"
 #include "scene/representation.h"
 #include "scene/selection.h"
 
@@ -311,6 +312,7 @@ FileContents MoleculeBuilder::finish(const std::filesystem::path& file, std::str
     assemble(options.data);
     clip(options.data);
     contents.objects = represent(molecule_, options.data);
+    if (options.facts) contents.objects.front().facts = molecule_facts(std::move(molecule_));
     return contents;
 }
 

@@ -81,7 +81,8 @@ FileContents particle_contents(const std::filesystem::path& file, std::string_vi
     particles.name = model_name(file);
     contents.format = format;
     contents.counts.emplace(contents.counts.begin(), "particles", particles.count());
-    contents.objects = represent(std::move(particles), options.data, contents.warnings);
+    contents.objects =
+        represent(std::move(particles), options.data, contents.warnings, options.facts);
     return contents;
 }
 
@@ -97,6 +98,9 @@ ParticleColumns::ParticleColumns(const std::filesystem::path& file, std::vector<
         }
     }
     for (const std::string& name : requested_fields(options.data)) request(name);
+    for (std::size_t c = 0; options.facts && c < columns_.size(); ++c) {
+        if (columns_[c].axis < 0) request(columns_[c].name);
+    }
     for (std::size_t c = 0; c < columns_.size(); ++c) {
         Column& column = columns_[c];
         column.needed = summarize_ || column.axis >= 0 || !column.destinations.empty();

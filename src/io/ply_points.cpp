@@ -45,7 +45,7 @@ PointLayout make_layout(const Element& points, const ReadOptions& options, Parti
         target.axis = index_in(property.name, {"x", "y", "z"});
         target.color = index_in(property.name, {"red", "green", "blue"});
         const bool is_size = is_radius_name(property.name) || is_diameter_name(property.name);
-        const bool wanted = (is_size && options.data.radius.empty()) ||
+        const bool wanted = options.facts || (is_size && options.data.radius.empty()) ||
                             std::ranges::find(asked, property.name) != asked.end();
         if (wanted && !property.length_type && target.axis < 0) {
             target.field = particles.fields.size();

@@ -18,6 +18,7 @@ struct ReadOptions {
     int frame = 0;           ///< of a file with several, from 0
     DataSettings data = {};  ///< what of it is drawn, and as what
     bool summarize = false;  ///< look into fields that nothing draws, too
+    bool facts = false;      ///< keep what the file says about each atom and particle
 };
 
 /// What a file held, ready for a scene.

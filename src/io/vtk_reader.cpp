@@ -138,6 +138,7 @@ class VtkReader {
     }
 
     bool is_wanted(const std::string& name) const {
+        if (options_.facts) return true;
         if (options_.data.radius.empty() && (is_radius_name(name) || is_diameter_name(name))) {
             return true;
         }

@@ -46,6 +46,19 @@ std::string print_word(const std::array<Word<T>, N>& words, T value) {
     return {};
 }
 
+template <class T, std::size_t N>
+ValueForm one_of(const std::array<Word<T>, N>& words) {
+    ValueForm form{ValueForm::Kind::word};
+    for (const Word<T>& entry : words) form.words.push_back(entry.word);
+    return form;
+}
+
+ValueForm color_map_names() {
+    ValueForm form{ValueForm::Kind::word};
+    for (const ColorMap& map : color_maps()) form.words.push_back(map.name);
+    return form;
+}
+
 /// "7", "0:20" or "5:".
 void read_frame(Settings& settings, std::string_view text) {
     const auto ends = split(text, ':');
@@ -172,12 +185,13 @@ std::vector<Setting> data_settings_rows() {
          "found "
          "by distance",
          [](S& s, Text t) { s.data.representation = read_word(kRepresentations, t); },
-         [](const S& s) { return print_word(kRepresentations, s.data.representation); }},
+         [](const S& s) { return print_word(kRepresentations, s.data.representation); }, false,
+         one_of(kRepresentations)},
         {"radii", "Input", "TABLE",
          "Radii of atoms: vdw (van der Waals, Mantina 2009), bondi (van der Waals, Bondi 1964, as "
          "PyMOL) or covalent (Cordero 2008)",
          [](S& s, Text t) { s.data.radii = read_word(kRadii, t); },
-         [](const S& s) { return print_word(kRadii, s.data.radii); }},
+         [](const S& s) { return print_word(kRadii, s.data.radii); }, false, one_of(kRadii)},
         {"radius", "Input", "R|FIELD",
          "Radius of atoms and particles: a number in the units of the file, or a field",
          [](S& s, Text t) {
@@ -193,11 +207,13 @@ std::vector<Setting> data_settings_rows() {
         {"color-by", "Input", "WHAT",
          "element, chain, chain-hetero (carbons by chain, others by element), residue, entity, "
          "rainbow (along each chain), none, a colour, or a field such as bfactor or velocity.x",
-         [](S& s, Text t) { s.data.color_by = t; }, [](const S& s) { return s.data.color_by; }},
+         [](S& s, Text t) { s.data.color_by = t; }, [](const S& s) { return s.data.color_by; },
+         false,
+         any_text({"element", "chain", "chain-hetero", "residue", "entity", "rainbow", "none"})},
         {"colormap", "Input", "MAP",
          "Colours of a field: viridis, cividis, magma, inferno, plasma, coolwarm or gray",
          [](S& s, Text t) { s.data.color_map = read_color_map(t); },
-         [](const S& s) { return std::string(s.data.color_map->name); }},
+         [](const S& s) { return std::string(s.data.color_map->name); }, false, color_map_names()},
         {"color-range", "Input", "LOW:HIGH",
          "Values of a field at the ends of its colours; by default its least and greatest",
          [](S& s, Text t) { s.data.color_range = read_range(t); },

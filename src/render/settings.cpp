@@ -122,6 +122,21 @@ struct Words {
     }
 };
 
+template <class T>
+ValueForm words_of(ValueForm::Kind kind, const Words<T>& words) {
+    ValueForm form{kind};
+    for (const auto& entry : words.entries) form.words.push_back(entry.first);
+    return form;
+}
+template <class T>
+ValueForm one_of(const Words<T>& words) {
+    return words_of(ValueForm::Kind::word, words);
+}
+template <class T>
+ValueForm some_of(const Words<T>& words) {
+    return words_of(ValueForm::Kind::list, words);
+}
+
 const Words<View> kViews{{{"auto", View::automatic},
                           {"front", View::front},
                           {"back", View::back},
@@ -250,28 +265,29 @@ std::vector<Setting> make_table() {
         {"dpi", "Picture", "D",
          "Pixels per inch: what pt and mm mean, and how large the picture prints",
          [](S& s, Text t) { s.dpi = read_number(t, 1, 100000); },
-         [](const S& s) { return fmt::format("{}", s.dpi); }},
+         [](const S& s) { return fmt::format("{}", s.dpi); }, false, number(36, 1200)},
         {"background", "Picture", "COLOR", "Colour behind the scene, or transparent",
          read_background,
          [](const S& s) {
              return s.shading.transparent_background ? "transparent"
                                                      : to_string(s.shading.background);
-         }},
+         },
+         false, color()},
         {"compose", "Picture", "WHAT",
          "What to draw: shaded (no lines), lines (alone, on white) or both",
          [](S& s, Text t) { s.compose = kComposes.read(t); },
-         [](const S& s) { return kComposes.print(s.compose); }},
+         [](const S& s) { return kComposes.print(s.compose); }, false, one_of(kComposes)},
         {"aov", "Picture", "LIST",
          "More to write: id, depth, normal, position, lines; channels of an EXR, else pictures "
          "beside it",
          [](S& s, Text t) { s.aovs = kAovs.read_list(t); },
-         [](const S& s) { return kAovs.print_list(s.aovs); }},
+         [](const S& s) { return kAovs.print_list(s.aovs); }, false, some_of(kAovs)},
 
         {"view", "View", "SIDE",
          "auto (broad side of molecules, three quarters of meshes), front, back, left, right, top, "
          "bottom or iso",
          [](S& s, Text t) { s.view.view = kViews.read(t); },
-         [](const S& s) { return kViews.print(s.view.view); }},
+         [](const S& s) { return kViews.print(s.view.view); }, false, one_of(kViews)},
         {"eye", "View", "X,Y,Z", "Where the viewer stands, in the units of the file",
          [](S& s, Text t) { s.view.eye = read_optional(t, read_vector); },
          [](const S& s) { return s.view.eye ? print(*s.view.eye) : std::string(); }},
@@ -283,7 +299,7 @@ std::vector<Setting> make_table() {
          [](const S& s) { return s.view.up ? print(*s.view.up) : std::string(); }},
         {"fov", "View", "DEG", "Vertical field of view",
          [](S& s, Text t) { s.view.fov_deg = read_number(t, 0.001, 170); },
-         [](const S& s) { return fmt::format("{}", s.view.fov_deg); }},
+         [](const S& s) { return fmt::format("{}", s.view.fov_deg); }, false, number(1, 120)},
         {"orthographic", "View", "HEIGHT",
          "Parallel projection; the height of the view in the units of the file, or auto to fit",
          [](S& s, Text t) { s.view.orthographic = read_optional(t, read_view_height); },
@@ -293,13 +309,13 @@ std::vector<Setting> make_table() {
          }},
         {"margin", "View", "F", "Share of the picture left free on each side by automatic framing",
          [](S& s, Text t) { s.view.margin = read_number(t, 0, 0.45); },
-         [](const S& s) { return fmt::format("{}", s.view.margin); }},
+         [](const S& s) { return fmt::format("{}", s.view.margin); }, false, number(0, 0.45)},
 
         {"method", "Lines", "NAME",
          "How lines are found: edges (located, of exact width) or stencil (the paper's ray "
          "stencils)",
          [](S& s, Text t) { s.method = kMethods.read(t); },
-         [](const S& s) { return kMethods.print(s.method); }},
+         [](const S& s) { return kMethods.print(s.method); }, false, one_of(kMethods)},
         {"lines", "Lines", "LIST",
          "silhouette, intersection, self-occlusion, crease, boundary, mesh, ridge (apparent "
          "ridges), "
@@ -309,23 +325,24 @@ std::vector<Setting> make_table() {
              for (const LineType type : kLineTypeWords.read_list(t)) types.add(type);
              s.lines = types;
          },
-         [](const S& s) { return print(s.lines); }},
+         [](const S& s) { return print(s.lines); }, false, some_of(kLineTypeWords)},
         {"lattice", "Lines", "Q",
          "Method edges: rays along a pixel's side; 2 to 4 find thinner things and shade smoother",
          [](S& s, Text t) { s.lattice = read_int(t, 1, kMostLatticePoints); },
-         [](const S& s) { return fmt::format("{}", s.lattice); }},
+         [](const S& s) { return fmt::format("{}", s.lattice); }, false,
+         whole(1, kMostLatticePoints)},
         {"line-width", "Lines", "LEN", "Width in px, pt, mm or % of the picture's height",
          [](S& s, Text t) { s.line_width = read_length(t); },
-         [](const S& s) { return print(s.line_width); }},
+         [](const S& s) { return print(s.line_width); }, false, length_px(0.25, 20)},
         {"line-density", "Lines", "F",
          "Method edges: share of an area that lines may cover; denser ones get thinner, 1 lets "
          "them "
          "be",
          [](S& s, Text t) { s.line_density = read_number(t, 0.05, 1); },
-         [](const S& s) { return fmt::format("{}", s.line_density); }},
+         [](const S& s) { return fmt::format("{}", s.line_density); }, false, number(0.05, 1)},
         {"line-color", "Lines", "COLOR", "Colour of the lines",
          [](S& s, Text t) { s.line_color = read_color(t); },
-         [](const S& s) { return to_string(s.line_color); }},
+         [](const S& s) { return to_string(s.line_color); }, false, color()},
         {"line", "Lines", "RULE",
          "Method edges: TYPE:width=LEN,color=COLOR,opacity=F for lines of one type, or all; "
          "TYPE@K:... for those of the K-th object alone; may be repeated",
@@ -338,83 +355,91 @@ std::vector<Setting> make_table() {
          "Between what lines run: primitive (atoms, particles, triangles), part (chains, groups), "
          "part:chain, part:residue, part:entity, part:element, part:FIELD or object; by default "
          "atoms, particles and whole meshes",
-         read_ids, print_ids},
+         read_ids, print_ids, false,
+         any_text({"primitive", "part", "part:chain", "part:residue", "part:entity", "part:element",
+                   "object"})},
         {"metric", "Lines", "NAME",
          "Profile across a line: solid (method edges' own), linear (method stencil's own, the "
          "paper's equation 2) or power:P (equation 3 has P = 10)",
          [](S& s, Text t) { s.metric = t.empty() ? std::nullopt : std::optional(read_metric(t)); },
-         [](const S& s) { return s.metric ? print(*s.metric) : std::string(); }},
+         [](const S& s) { return s.metric ? print(*s.metric) : std::string(); }, false,
+         any_text({"solid", "linear", "power:10"})},
         {"quality", "Lines", "N", "Method stencil: rings of a stencil, 4 N (N + 1) rays a sample",
          [](S& s, Text t) { s.rings = read_int(t, 1, 64); },
-         [](const S& s) { return fmt::format("{}", s.rings); }},
+         [](const S& s) { return fmt::format("{}", s.rings); }, false, whole(1, 8)},
         {"normals", "Lines", "WHICH",
          "Normals that creases are found by: auto (smooth but for a mesh's own creases), shading "
          "(as shaded: a file's smooth normals hide creases) or geometric (every edge of a facet)",
          [](S& s, Text t) { s.shading.normals = kNormalSources.read(t); },
-         [](const S& s) { return kNormalSources.print(s.shading.normals); }},
+         [](const S& s) { return kNormalSources.print(s.shading.normals); }, false,
+         one_of(kNormalSources)},
         {"ridge-scale", "Lines", "LEN",
          "Apparent ridges: radius on the picture of what the turning of normals is taken from; "
          "larger is smoother",
          [](S& s, Text t) { s.ridge_scale = read_length(t); },
-         [](const S& s) { return print(s.ridge_scale); }},
+         [](const S& s) { return print(s.ridge_scale); }, false, length_px(1, 40)},
         {"ridge-turn", "Lines", "DEG",
          "Apparent ridges: where the normal turns by this in 1 % of the picture's height, they "
          "begin; they are full where it turns by twice as much",
          [](S& s, Text t) { s.ridge_turn_deg = read_number(t, 1e-3, 1e3); },
-         [](const S& s) { return fmt::format("{}", s.ridge_turn_deg); }},
+         [](const S& s) { return fmt::format("{}", s.ridge_turn_deg); }, false, number(0.5, 20)},
         {"crease-gradient", "Lines", "G",
          "Method stencil: a crease is where the normal changes by more than this a pixel",
          [](S& s, Text t) {
              s.thresholds.crease_gradient = static_cast<float>(read_number(t, 1e-6, 10));
          },
-         [](const S& s) { return fmt::format("{}", s.thresholds.crease_gradient); }},
+         [](const S& s) { return fmt::format("{}", s.thresholds.crease_gradient); }, false,
+         number(0.01, 1)},
         {"depth-jump", "Lines", "SHARE",
          "Method stencil: a self-occlusion is where depth changes by more than this share of it",
          [](S& s, Text t) {
              s.thresholds.depth_share = static_cast<float>(read_number(t, 1e-6, 1e6));
          },
-         [](const S& s) { return fmt::format("{}", s.thresholds.depth_share); }},
+         [](const S& s) { return fmt::format("{}", s.thresholds.depth_share); }, false,
+         number(0.001, 1)},
         {"line-blend", "Lines", "SPACE",
          "Values in which lines are mixed with the picture: display (sRGB), linear, or auto: "
          "linear "
          "in an EXR, else display",
          [](S& s, Text t) { s.line_blend = kBlends.read(t); },
-         [](const S& s) { return kBlends.print(s.line_blend); }},
+         [](const S& s) { return kBlends.print(s.line_blend); }, false, one_of(kBlends)},
 
         {"shade", "Shading", "MODE",
          "lambert (diffuse), toon (in steps), flat (colours only) or none",
          [](S& s, Text t) { s.shading.mode = kShadeModes.read(t); },
-         [](const S& s) { return kShadeModes.print(s.shading.mode); }},
+         [](const S& s) { return kShadeModes.print(s.shading.mode); }, false, one_of(kShadeModes)},
         {"aa", "Shading", "MODE",
          "Smoothing of what is not a line: none, edges (method edges: mix the two sides' colours "
          "in "
          "pixels that an edge cuts), stencil (method stencil: shade the stencil's rays too) or "
          "multisample:S (method edges: a lattice of at least S rays, 16 at most)",
          [](S& s, Text t) { s.aa = t.empty() ? std::nullopt : std::optional(read_aa(t)); },
-         [](const S& s) { return s.aa ? print(*s.aa) : std::string(); }},
+         [](const S& s) { return s.aa ? print(*s.aa) : std::string(); }, false,
+         any_text({"none", "edges", "stencil", "multisample:9"})},
 
         {"fill", "Curves", "WHAT",
          "What SVG and PDF show below the lines: flat (each geometry filled with one colour), "
          "image "
          "(the shaded picture, embedded) or none",
          [](S& s, Text t) { s.fill = kFills.read(t); },
-         [](const S& s) { return kFills.print(s.fill); }},
+         [](const S& s) { return kFills.print(s.fill); }, false, one_of(kFills)},
         {"curve-tolerance", "Curves", "PX",
          "Pixels by which a curve may miss the points that it was fitted to",
          [](S& s, Text t) { s.curve_tolerance_px = read_number(t, 0.01, 10); },
-         [](const S& s) { return fmt::format("{}", s.curve_tolerance_px); }},
+         [](const S& s) { return fmt::format("{}", s.curve_tolerance_px); }, false,
+         number(0.01, 2)},
         {"min-length", "Curves", "LEN",
          "Leave out lines that are shorter, from junction to junction",
          [](S& s, Text t) { s.min_length = read_length(t, true); },
-         [](const S& s) { return print(s.min_length); }},
+         [](const S& s) { return print(s.min_length); }, false, length_px(0, 50)},
 
         {"threads", "Run", "T", "Threads to use; 0 for all. The picture does not depend on it",
          [](S& s, Text t) { s.threads = read_int(t, 0, 1024); },
-         [](const S& s) { return fmt::format("{}", s.threads); }},
+         [](const S& s) { return fmt::format("{}", s.threads); }, false, whole(0, 64)},
         {"tile", "Run", "PX",
          "Side of the tiles that threads work on. The picture does not depend on it",
          [](S& s, Text t) { s.tile = read_tile(t); },
-         [](const S& s) { return fmt::format("{}", s.tile); }},
+         [](const S& s) { return fmt::format("{}", s.tile); }, false, whole(16, 256)},
     };
 }
 

@@ -117,6 +117,7 @@ struct Setting {
     /// The value in the form that `set` reads; empty for "chosen automatically".
     std::function<std::string(const Settings&)> get;
     bool repeatable = false;  ///< `set` adds to what is there; an empty value clears it
+    ValueForm form = {};
 };
 
 /// Rows of topic "Input": what of a file is drawn, and as what (data_settings.cpp).

@@ -4,11 +4,22 @@
 
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "base/error.h"
 #include "base/text.h"
 
 namespace ink {
+
+ValueForm whole(double least, double most) { return {ValueForm::Kind::whole, {}, least, most}; }
+ValueForm number(double least, double most) { return {ValueForm::Kind::number, {}, least, most}; }
+ValueForm length_px(double least, double most) {
+    return {ValueForm::Kind::length, {}, least, most};
+}
+ValueForm color() { return {ValueForm::Kind::color}; }
+ValueForm any_text(std::vector<std::string_view> some_words) {
+    return {ValueForm::Kind::text, std::move(some_words)};
+}
 
 double Length::pixels(double dpi, int picture_height) const {
     switch (unit) {

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "base/color.h"
 
@@ -17,6 +18,22 @@ struct Length {
     double pixels(double dpi, int picture_height) const;
     friend bool operator==(const Length&, const Length&) = default;
 };
+
+/// What a value may be, for user interfaces; `Setting::set` has the last word.
+struct ValueForm {
+    enum class Kind : std::uint8_t { text, word, list, whole, number, length, color };
+    Kind kind = Kind::text;
+    std::vector<std::string_view> words = {};  ///< of text: some that are allowed
+    double least = 0.0;
+    double most = 0.0;  ///< that is usual; more may be allowed
+};
+
+/// Forms of a few kinds.
+ValueForm whole(double least, double most);
+ValueForm number(double least, double most);
+ValueForm length_px(double least, double most);
+ValueForm color();
+ValueForm any_text(std::vector<std::string_view> some_words);
 
 // Readers of settings' values. They throw UsageError without the setting's name; the table of
 // settings adds it.

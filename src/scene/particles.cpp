@@ -8,6 +8,7 @@
 #include <iterator>
 #include <limits>
 #include <map>
+#include <utility>
 
 #include "base/bounds.h"
 #include "base/error.h"
@@ -291,7 +292,7 @@ std::vector<Rgb8> particle_colors(Particles& particles, const DataSettings& sett
 }  // namespace
 
 std::vector<Object> represent(Particles particles, const DataSettings& settings,
-                              std::vector<std::string>& warnings) {
+                              std::vector<std::string>& warnings, bool facts) {
     Object object;
     object.name = particles.name;
     object.kind = ObjectKind::particles;
@@ -302,9 +303,10 @@ std::vector<Object> represent(Particles particles, const DataSettings& settings,
         set_parts(field_values(particles, "ids", settings.parts), shape, object);
     }
     const Radii radii = particle_radii(particles, settings, warnings);
-    particles.fields.clear();
-    particles.fields.shrink_to_fit();
+    std::vector<Field> fields = std::exchange(particles.fields, {});
+    if (!facts) fields = {};
     const std::vector<std::uint8_t> keep = drawable(particles, radii, settings, warnings);
+    std::vector<std::uint32_t> rows;
     shape.spheres.resize(particles.count());
     parallel_ranges(particles.count(), kGrain, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
@@ -315,8 +317,12 @@ std::vector<Object> represent(Particles particles, const DataSettings& settings,
         keep_only(keep, shape.spheres);
         keep_only(keep, shape.colors);
         keep_only(keep, shape.parts);
+        for (std::uint32_t i = 0; facts && i < keep.size(); ++i) {
+            if (keep[i] != 0) rows.push_back(i);
+        }
     }
     object.shape = std::move(shape);
+    if (facts) object.facts = field_facts(std::move(fields), std::move(rows));
     std::vector<Object> objects;
     objects.push_back(std::move(object));
     return objects;

@@ -36,9 +36,10 @@ std::vector<std::string> requested_fields(const DataSettings& settings);
 /// Linear in time and memory.
 double touching_radius(const std::vector<Vec3f>& positions);
 
-/// The particles as objects to draw, with what was left out or chosen in `warnings`. Throws Error
-/// where the settings name what the particles do not have, or nothing is left to draw.
+/// The particles as objects to draw, with what was left out or chosen in `warnings`, and with their
+/// fields as facts if asked for. Throws Error where the settings name what the particles do not
+/// have, or nothing is left to draw.
 std::vector<Object> represent(Particles particles, const DataSettings& settings,
-                              std::vector<std::string>& warnings);
+                              std::vector<std::string>& warnings, bool facts = false);
 
 }  // namespace ink

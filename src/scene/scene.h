@@ -8,6 +8,7 @@
 
 #include "base/bounds.h"
 #include "base/vec.h"
+#include "scene/facts.h"
 #include "scene/glyphs.h"
 #include "scene/ids.h"
 #include "scene/material.h"
@@ -51,6 +52,8 @@ struct Object {
     /// of one number and the whole of both share their IDs.
     bool continues_previous = false;
     std::optional<NormalSource> normals{};
+    /// What the file says about a primitive; empty unless the reader was asked to keep it.
+    FactSource facts{};
 
     std::size_t primitive_count() const { return ink::primitive_count(shape); }
     Bounds3d world_bounds() const;

@@ -1,0 +1,178 @@
+#include "session/painter.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <exception>
+#include <string>
+#include <utility>
+
+namespace inktrace::viewer {
+
+namespace {
+
+double ms_since(Clock::time_point start) {
+    return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+}
+
+double megapixels(const Picture& picture) { return 1e-6 * picture.width() * picture.height(); }
+
+/// Side of the tiles that threads work on: rendering gives way between two of them.
+int tile_side(double ms_per_megapixel) {
+    constexpr double kTileMs = 8.0;
+    const double pixels = ms_per_megapixel > 0.0 ? kTileMs / ms_per_megapixel * 1e6 : 4096.0;
+    const auto side = static_cast<unsigned>(std::clamp(std::sqrt(pixels), 8.0, 64.0));
+    return static_cast<int>(std::bit_floor(side));
+}
+
+}  // namespace
+
+Settings quick_settings(const Settings& settings) {
+    Settings quick = settings;
+    quick.set("lattice", "1");
+    if (settings.get("aa").starts_with("multisample")) quick.set("aa", "");
+    if (settings.get("method") == "stencil") quick.set("quality", "1");
+    return quick;
+}
+
+Painter::Painter(std::function<void()> news) : news_(std::move(news)), thread_([this] { run(); }) {}
+
+Painter::~Painter() {
+    {
+        const std::scoped_lock lock(mutex_);
+        ending_ = true;
+        cancel_ = true;
+    }
+    changed_.notify_all();
+    thread_.join();
+}
+
+void Painter::paint(PaintRequest request) {
+    {
+        const std::scoped_lock lock(mutex_);
+        waiting_ = std::move(request);
+        if (running_ && !cancel_.exchange(true)) {
+            cancelled_at_ = Clock::now().time_since_epoch().count();
+        }
+    }
+    changed_.notify_all();
+}
+
+std::optional<Painting> Painter::take() {
+    const std::scoped_lock lock(mutex_);
+    return std::exchange(painting_, std::nullopt);
+}
+
+std::optional<std::string> Painter::take_error() {
+    const std::scoped_lock lock(mutex_);
+    return std::exchange(error_, std::nullopt);
+}
+
+bool Painter::busy() const {
+    const std::scoped_lock lock(mutex_);
+    return running_ || waiting_;
+}
+
+void Painter::finish(Painting painting) {
+    {
+        const std::scoped_lock lock(mutex_);
+        painting_ = std::move(painting);
+    }
+    news_();
+}
+
+void Painter::quick(const PaintRequest& request) {
+    const double scale = pace_.scale();
+    const Settings cheap = quick_settings(request.settings);
+    const Settings settings = scale < 1.0 ? cheap.scaled(scale) : cheap;
+    const auto start = Clock::now();
+    RenderOptions options;
+    options.cancel = &ending_;
+    auto picture = std::make_shared<const Picture>(request.renderer->render(settings, options));
+    const double ms = ms_since(start);
+    pace_.frame_took(scale, ms);
+    shown_exactly_ = scale == 1.0 && settings.changed() == request.settings.changed();
+    finish({.picture = std::move(picture),
+            .settings = request.settings,
+            .exact = shown_exactly_,
+            .scale = scale,
+            .frame_ms = ms,
+            .latency_ms = ms_since(request.asked)});
+}
+
+void Painter::in_full(const PaintRequest& request) {
+    Settings settings = request.settings;
+    settings.set("tile", std::to_string(tile_side(ms_per_megapixel_)));
+    RenderOptions options;
+    options.cancel = &cancel_;
+    const auto start = Clock::now();
+    double share = 0.0;
+    options.progress = [&](double done, double /*megapixels*/) {
+        // A few times a second are enough for a bar.
+        constexpr double kStep = 0.05;
+        progress_ = done;
+        if (done < share + kStep || ms_since(start) < 200.0) return;
+        share = done;
+        news_();
+    };
+    auto picture = std::make_shared<const Picture>(request.renderer->render(settings, options));
+    const double ms = ms_since(start);
+    ms_per_megapixel_ = ms / megapixels(*picture);
+    if (quick_settings(request.settings).changed() == request.settings.changed()) {
+        pace_.full_took(ms);
+    }
+    finish({.picture = std::move(picture),
+            .settings = request.settings,
+            .exact = true,
+            .frame_ms = ms,
+            .latency_ms = ms_since(request.asked)});
+}
+
+void Painter::run() {
+    std::unique_lock lock(mutex_);
+    for (;;) {
+        changed_.wait(lock, [this] { return ending_ || waiting_; });
+        if (ending_) return;
+        const PaintRequest request = *std::exchange(waiting_, std::nullopt);
+        running_ = true;
+        try {
+            if (request.in_motion) {
+                lock.unlock();
+                quick(request);
+                lock.lock();
+                // While a hand moves, the next request comes within a frame or two.
+                constexpr auto kStill = std::chrono::milliseconds(60);
+                changed_.wait_for(lock, kStill, [this] { return ending_ || waiting_; });
+                if (ending_) return;
+            }
+            cancel_ = false;
+            progress_ = 0.0;
+            if (!waiting_ && !(request.in_motion && shown_exactly_)) {
+                lock.unlock();
+                in_full(request);
+                lock.lock();
+            }
+        } catch (const Error& error) {
+            if (!lock.owns_lock()) lock.lock();
+            if (error.kind() == Error::Kind::cancelled) {
+                const Clock::time_point asked{Clock::duration(cancelled_at_.load())};
+                give_way_ms_ = ms_since(asked);
+                // What takes long to stop has tiles that are too large for its settings.
+                if (give_way_ms_ > 15.0) {
+                    ms_per_megapixel_ = std::max(ms_per_megapixel_ * 4.0, 8000.0);
+                }
+            } else {
+                error_ = error.what();
+            }
+        } catch (const std::exception& error) {
+            if (!lock.owns_lock()) lock.lock();
+            error_ = error.what();
+        }
+        running_ = false;
+        lock.unlock();
+        news_();
+        lock.lock();
+    }
+}
+
+}  // namespace inktrace::viewer

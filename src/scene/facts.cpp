@@ -1,0 +1,61 @@
+#include "scene/facts.h"
+
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "scene/elements.h"
+#include "scene/molecule.h"
+
+namespace ink {
+
+namespace {
+
+void add_fields(const std::vector<Field>& fields, std::size_t entry, Facts& facts) {
+    for (const Field& field : fields) {
+        const std::size_t first = entry * field.components;
+        if (first + field.components > field.values.size()) continue;
+        std::string text;
+        for (std::size_t c = 0; c < field.components; ++c) {
+            text += fmt::format("{}{:.6g}", c == 0 ? "" : ", ", field.values[first + c]);
+        }
+        facts.emplace_back(field.name, std::move(text));
+    }
+}
+
+}  // namespace
+
+FactSource molecule_facts(Molecule molecule) {
+    const auto kept = std::make_shared<const Molecule>(std::move(molecule));
+    return [kept](std::uint32_t atom) {
+        Facts facts;
+        const Molecule& m = *kept;
+        if (atom >= m.atom_count()) return facts;
+        if (atom < m.atom_names.size()) facts.emplace_back("atom", to_text(m.atom_names[atom]));
+        facts.emplace_back("element", element(m.elements[atom]).symbol);
+        if (const Residue* residue = m.residue(atom)) {
+            facts.emplace_back("residue", fmt::format("{} {}", residue->name, residue->number));
+            if (residue->chain < m.chains.size()) {
+                facts.emplace_back("chain", m.chains[residue->chain]);
+            }
+        }
+        add_fields(m.fields, atom, facts);
+        return facts;
+    };
+}
+
+FactSource field_facts(std::vector<Field> fields, std::vector<std::uint32_t> rows) {
+    struct Table {
+        std::vector<Field> fields;
+        std::vector<std::uint32_t> rows;
+    };
+    const auto kept = std::make_shared<const Table>(Table{std::move(fields), std::move(rows)});
+    return [kept](std::uint32_t primitive) {
+        Facts facts;
+        if (!kept->rows.empty() && primitive >= kept->rows.size()) return facts;
+        add_fields(kept->fields, kept->rows.empty() ? primitive : kept->rows[primitive], facts);
+        return facts;
+    };
+}
+
+}  // namespace ink
