@@ -15,6 +15,7 @@ struct Polyline {
     std::uint32_t left = 0, right = 0;
     std::string left_name, right_name;
     bool left_in_front = true;  ///< which of them is nearer to the viewer
+    bool hidden = false;        ///< on surfaces behind others
     bool closed = false;        ///< runs on from the last point to the first
     double strength = 1.0;      ///< in (0, 1]; below 1 for creases of small angle
     /// Pixels: x right, y down, from the upper left corner of the picture. Lines go on a little

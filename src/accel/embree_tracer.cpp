@@ -46,6 +46,37 @@ void check(RTCDevice device) {
     }
 }
 
+#if RTC_VERSION_MAJOR >= 4
+using QueryContext = RTCRayQueryContext;
+constexpr RTCSceneFlags kFilterWithQuery = RTC_SCENE_FLAG_FILTER_FUNCTION_IN_ARGUMENTS;
+#else
+using QueryContext = RTCIntersectContext;
+constexpr RTCSceneFlags kFilterWithQuery = RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION;
+#endif
+
+/// What Embree hands back to the functions that it calls on the way.
+struct Query : QueryContext {
+    SurfaceHits* hits = nullptr;  ///< if every crossing is wanted; of the ray whose ID is the index
+};
+
+/// Embree's filter: writes a crossing down and goes on as if there were none.
+void record(const RTCFilterFunctionNArguments* args) {
+    SurfaceHits& lists = *static_cast<Query*>(args->context)->hits;
+    for (unsigned i = 0; i < args->N; ++i) {
+        if (args->valid[i] == 0) continue;
+        args->valid[i] = 0;
+        const unsigned n = args->N;
+        lists[RTCRayN_id(args->ray, n, i)].push_back(
+            {RTCRayN_tfar(args->ray, n, i),
+             {RTCHitN_Ng_x(args->hit, n, i), RTCHitN_Ng_y(args->hit, n, i),
+              RTCHitN_Ng_z(args->hit, n, i)},
+             RTCHitN_u(args->hit, n, i),
+             RTCHitN_v(args->hit, n, i),
+             RTCHitN_primID(args->hit, n, i),
+             RTCHitN_geomID(args->hit, n, i)});
+    }
+}
+
 /// Embree reads 16 bytes at every vertex, so the last of them must not end its page: shared buffers
 /// of 12-byte vertices need four bytes behind the end, which a vector's slack does not promise.
 GeometryHandle make_triangles(RTCDevice device, const Mesh& mesh) {
@@ -85,6 +116,7 @@ struct UserShape {
     static void intersect(const RTCIntersectFunctionNArguments* args) {
         const auto& shape = *static_cast<const Shape*>(args->geometryUserPtr);
         const Meet meet(shape, args->primID);
+        SurfaceHits* const all = static_cast<Query*>(args->context)->hits;
         const unsigned width = args->N;
         RTCRayN* rays = RTCRayHitN_RayN(args->rayhit, width);
         RTCHitN* hits = RTCRayHitN_HitN(args->rayhit, width);
@@ -94,6 +126,10 @@ struct UserShape {
                                 RTCRayN_org_z(rays, width, i)},
                                {RTCRayN_dir_x(rays, width, i), RTCRayN_dir_y(rays, width, i),
                                 RTCRayN_dir_z(rays, width, i)}};
+            if (all != nullptr) {
+                record_all(ray, meet, *args, (*all)[RTCRayN_id(rays, width, i)]);
+                continue;
+            }
             float& far = RTCRayN_tfar(rays, width, i);
             const auto hit = meet(ray, RTCRayN_tnear(rays, width, i), far);
             if (!hit) continue;
@@ -106,6 +142,18 @@ struct UserShape {
             RTCHitN_v(hits, width, i) = 0.0F;
             RTCHitN_primID(hits, width, i) = args->primID;
             RTCHitN_geomID(hits, width, i) = args->geomID;
+        }
+    }
+
+    static void record_all(const ShapeRay& ray, const Meet& meet,
+                           const RTCIntersectFunctionNArguments& args,
+                           std::vector<SurfaceHit>& hits) {
+        constexpr double kStep = 1e-9;  // in a scene of size 1
+        double near = 0.0;
+        while (const auto hit = meet(ray, near, double{kInfinity})) {
+            hits.push_back({static_cast<float>(hit->t), to_float(normalize(hit->normal)), 0.0F,
+                            0.0F, args.primID, args.geomID});
+            near = hit->t + kStep * (1.0 + hit->t);
         }
     }
 
@@ -170,7 +218,6 @@ void prepare(RayHit& packet) {
         packet.ray.tnear[i] = 0.0F;
         packet.ray.time[i] = 0.0F;
         packet.ray.mask[i] = ~0U;
-        packet.ray.id[i] = 0;
         packet.ray.flags[i] = 0;
         packet.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
     }
@@ -190,6 +237,7 @@ void load(const RayPacket& rays, int first, RayHit& out) {
     copy(out.ray.dir_z, rays.dir_z);
     for (int i = 0; i < Width; ++i) {
         out.ray.tfar[i] = kInfinity;
+        out.ray.id[i] = static_cast<unsigned>(first + i);
         out.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
     }
 }
@@ -218,7 +266,7 @@ class EmbreeTracer final : public Tracer {
         scene_.reset(rtcNewScene(device_.get()));
         // Watertight between triangles: bisection homes in on their edges, where a crack would show
         // what lies behind as a jump in depth.
-        rtcSetSceneFlags(scene_.get(), RTC_SCENE_FLAG_ROBUST);
+        rtcSetSceneFlags(scene_.get(), RTC_SCENE_FLAG_ROBUST | kFilterWithQuery);
         for (std::uint32_t i = 0; i < scene.objects().size(); ++i) {
             if (!wanted || wanted(scene.objects()[i])) attach(scene.objects()[i], i);
         }
@@ -228,20 +276,32 @@ class EmbreeTracer final : public Tracer {
 
     void intersect(std::span<const RayPacket> rays, std::span<HitPacket> hits,
                    Coherence coherence) const override {
-        switch (width_) {
-            case PacketWidth::sixteen:
-                return trace<RTCRayHit16, 16>(rays, hits, coherence, [](auto&&... arguments) {
-                    rtcIntersect16(arguments...);
-                });
-            case PacketWidth::eight:
-                return trace<RTCRayHit8, 8>(rays, hits, coherence, [](auto&&... arguments) {
-                    rtcIntersect8(arguments...);
-                });
-            default: return trace_single(rays, hits, coherence);
-        }
+        intersect(rays, hits, coherence, nullptr);
+    }
+
+    void cross(const RayPacket& rays, SurfaceHits& hits) const override {
+        for (auto& list : hits) list.clear();
+        HitPacket nearest;  // of which there is none: all are passed over
+        intersect({&rays, 1}, {&nearest, 1}, Coherence::coherent, &hits);
     }
 
   private:
+    /// `all`: null, or the crossings of the one packet that is traced.
+    void intersect(std::span<const RayPacket> rays, std::span<HitPacket> hits, Coherence coherence,
+                   SurfaceHits* all) const {
+        switch (width_) {
+            case PacketWidth::sixteen:
+                return trace<RTCRayHit16, 16>(rays, hits, coherence, all, [](auto&&... arguments) {
+                    rtcIntersect16(arguments...);
+                });
+            case PacketWidth::eight:
+                return trace<RTCRayHit8, 8>(rays, hits, coherence, all, [](auto&&... arguments) {
+                    rtcIntersect8(arguments...);
+                });
+            default: return trace_single(rays, hits, coherence, all);
+        }
+    }
+
     void attach(const Object& object, std::uint32_t index) {
         const GeometryHandle geometry = std::visit(
             [&](const auto& shape) { return make_geometry(device_.get(), shape); }, object.shape);
@@ -250,26 +310,37 @@ class EmbreeTracer final : public Tracer {
         rtcAttachGeometryByID(scene_.get(), geometry.get(), index);
     }
 
+    /// Made of `query`, which must outlive it: the arguments of Embree 4, the context of Embree 3.
+    /// `hits`: null unless every crossing is wanted.
 #if RTC_VERSION_MAJOR >= 4
-    static RTCIntersectArguments arguments(Coherence coherence) {
+    static RTCIntersectArguments arguments(Coherence coherence, Query& query, SurfaceHits* hits) {
+        rtcInitRayQueryContext(&query);
         RTCIntersectArguments args;
         rtcInitIntersectArguments(&args);
         if (coherence == Coherence::coherent) args.flags = RTC_RAY_QUERY_FLAG_COHERENT;
+        args.context = &query;
+        query.hits = hits;
+        if (hits == nullptr) return args;
+        args.filter = record;
+        args.flags =
+            static_cast<RTCRayQueryFlags>(args.flags | RTC_RAY_QUERY_FLAG_INVOKE_ARGUMENT_FILTER);
         return args;
     }
 #else
-    static RTCIntersectContext arguments(Coherence coherence) {
-        RTCIntersectContext context;
-        rtcInitIntersectContext(&context);
-        if (coherence == Coherence::coherent) context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-        return context;
+    static QueryContext& arguments(Coherence coherence, Query& query, SurfaceHits* hits) {
+        rtcInitIntersectContext(&query);
+        if (coherence == Coherence::coherent) query.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+        query.hits = hits;
+        if (hits != nullptr) query.filter = record;
+        return query;
     }
 #endif
 
     template <class RayHit, int Width, class Kernel>
     void trace(std::span<const RayPacket> rays, std::span<HitPacket> hits, Coherence coherence,
-               const Kernel& kernel) const {
-        auto args = arguments(coherence);
+               SurfaceHits* all, const Kernel& kernel) const {
+        Query query;
+        auto&& args = arguments(coherence, query, all);
         alignas(64) RayHit packet{};  // Embree leaves the hit of a ray that misses as it was
         prepare<RayHit, Width>(packet);
         for (std::size_t k = 0; k < rays.size(); ++k) {
@@ -286,8 +357,9 @@ class EmbreeTracer final : public Tracer {
     }
 
     void trace_single(std::span<const RayPacket> rays, std::span<HitPacket> hits,
-                      Coherence coherence) const {
-        auto args = arguments(coherence);
+                      Coherence coherence, SurfaceHits* all) const {
+        Query query;
+        auto&& args = arguments(coherence, query, all);
         for (std::size_t k = 0; k < rays.size(); ++k) {
             for (int lane = 0; lane < kLanes; ++lane) {
                 RTCRayHit single{};
@@ -299,6 +371,7 @@ class EmbreeTracer final : public Tracer {
                 single.ray.dir_z = rays[k].dir_z[lane];
                 single.ray.tfar = kInfinity;
                 single.ray.mask = ~0U;
+                single.ray.id = static_cast<unsigned>(lane);
                 single.hit.geomID = RTC_INVALID_GEOMETRY_ID;
                 single.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
                 if (rays[k].active[lane] != 0) {

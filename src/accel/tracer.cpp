@@ -130,6 +130,10 @@ class SceneTracer final : public Tracer {
         all_.get().intersect(rays, hits, coherence);
     }
 
+    void cross(const RayPacket& rays, SurfaceHits& hits) const override {
+        all_.get().cross(rays, hits);
+    }
+
     std::unique_ptr<FrameTracer> frame(const Projection& projection, int threads) const override {
         const auto objects = std::span(scene_.objects());
         if (!projection.sees_all() || std::ranges::none_of(objects, has_screen_form)) {
@@ -148,6 +152,36 @@ class SceneTracer final : public Tracer {
 };
 
 }  // namespace
+
+void Tracer::cross(const RayPacket& rays, SurfaceHits& hits) const {
+    constexpr float kStep = 1e-5F;  // in a scene of size 1
+    for (auto& list : hits) list.clear();
+    RayPacket rest = rays;
+    Lanes<float> behind{};
+    HitPacket found;
+    const auto any_left = [&] {
+        return std::ranges::any_of(rest.active, [](auto active) { return active != 0; });
+    };
+    while (any_left()) {
+        intersect({&rest, 1}, {&found, 1}, Coherence::incoherent);
+        for (int i = 0; i < kLanes; ++i) {
+            if (found.object[i] == kNoObject) rest.active[i] = 0;
+            if (rest.active[i] == 0) continue;
+            const float t = behind[i] + found.t[i];
+            hits[static_cast<std::size_t>(i)].push_back(
+                {t,
+                 {found.normal_x[i], found.normal_y[i], found.normal_z[i]},
+                 found.u[i],
+                 found.v[i],
+                 found.primitive[i],
+                 found.object[i]});
+            behind[i] = t + kStep;
+            rest.origin_x[i] = rays.origin_x[i] + behind[i] * rays.dir_x[i];
+            rest.origin_y[i] = rays.origin_y[i] + behind[i] * rays.dir_y[i];
+            rest.origin_z[i] = rays.origin_z[i] + behind[i] * rays.dir_z[i];
+        }
+    }
+}
 
 std::unique_ptr<FrameTracer> Tracer::frame(const Projection& /*projection*/,
                                            int /*threads*/) const {

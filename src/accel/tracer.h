@@ -1,9 +1,11 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <memory>
 #include <span>
+#include <vector>
 
 #include "accel/projection.h"
 #include "base/lanes.h"
@@ -35,6 +37,17 @@ struct HitPacket {
         return hits;
     }
 };
+
+/// One of the places where a ray crosses a surface.
+struct SurfaceHit {
+    float t;       ///< distance along the ray, scene units
+    Vec3f normal;  ///< geometric, outward, of any length
+    float u, v;    ///< as in HitPacket
+    std::uint32_t primitive, object;
+};
+
+/// All that the rays of a packet cross, ray by ray, in any order.
+using SurfaceHits = std::array<std::vector<SurfaceHit>, kLanes>;
 
 enum class Coherence : std::uint8_t {
     coherent,   ///< the rays of a packet start and go close together
@@ -91,6 +104,10 @@ class Tracer {
     /// Traces `rays[k]` into `hits[k]`; the spans have equal length.
     virtual void intersect(std::span<const RayPacket> rays, std::span<HitPacket> hits,
                            Coherence coherence) const = 0;
+
+    /// Finds every surface along the rays, not only the first. Unless a tracer does better, by
+    /// going on from behind each hit, which loses surfaces that touch.
+    virtual void cross(const RayPacket& rays, SurfaceHits& hits) const;
 
     /// Prepares a picture on up to `threads` threads. The frame must not outlive the tracer. What
     /// tells it from `intersect` is speed alone.

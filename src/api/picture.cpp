@@ -134,6 +134,7 @@ std::vector<Polyline> Picture::lines() const {
         line.left_name = impl_->line_art->names(chain.left).label();
         line.right_name = impl_->line_art->names(chain.right).label();
         line.left_in_front = chain.left_in_front;
+        line.hidden = chain.hidden;
         line.closed = chain.closed;
         line.strength = static_cast<double>(chain.strength);
         for (const ink::Vec2f point : chain.points) line.points.push_back({point.x, point.y});

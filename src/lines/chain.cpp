@@ -311,6 +311,7 @@ Way Chainer::next_in_path(Way way) const {
 void Chainer::make_chain(Way first, ChainGraph& graph) {
     Chain chain;
     chain.type = segment(first).type;
+    chain.hidden = segment(first).hidden;
     chain.left = left(first);
     chain.right = right(first);
     chain.first_vertex = start(first);

@@ -19,6 +19,7 @@ struct Chain {
     GeometryId left = kBackground, right = kBackground;
     bool left_in_front = true;  ///< which of the sides is nearer to the viewer
     float strength = 1.0F;      ///< mean over the length, [0, 1]
+    bool hidden = false;        ///< on surfaces behind others
     bool closed = false;        ///< runs on from the last point to the first
     std::vector<Vec2f> points;  ///< pixels; at least two, three where closed
     std::vector<float> t;       ///< of the nearer side at each point, as in Segment

@@ -33,7 +33,8 @@ struct Segment {
     /// Lattice points whose colours the two sides have: indices into the grid that was searched.
     std::uint32_t left_sample = 0, right_sample = 0;
     bool spans_cell =
-        false;  ///< runs from one side of its cell to another, not to a junction in it
+        false;            ///< runs from one side of its cell to another, not to a junction in it
+    bool hidden = false;  ///< on a surface behind others
 };
 
 }  // namespace ink

@@ -6,8 +6,10 @@
 #include <cmath>
 #include <memory>
 
+#include "accel/peeled_tracer.h"
 #include "base/error.h"
 #include "base/parallel.h"
+#include "render/hidden_lines.h"
 #include "render/line_drawer.h"
 #include "render/line_finder.h"
 
@@ -20,8 +22,7 @@ bool has_object_rules(const Settings& settings) {
                                [](const LineRule& rule) { return rule.object > 0; });
 }
 
-LineStyle line_style(const Settings& settings, const Film& film, LineType type, int object) {
-    const StrokeStyle style = settings.line_style(type, object);
+LineStyle line_style(const Film& film, const StrokeStyle& style) {
     return {static_cast<float>(style.width_px), film.in_blend_space(style.color),
             static_cast<float>(style.opacity)};
 }
@@ -37,11 +38,16 @@ InkSettings ink_settings(const Pipeline& pipeline) {
     }
     InkSettings ink;
     ink.profile = settings.profile();
-    for (int object = 1; object <= (has_object_rules(settings) ? objects : 1); ++object) {
+    const int told_apart = has_object_rules(settings) ? objects : 1;
+    for (int object = 1; object <= told_apart; ++object) {
         for (int type = 0; type < kLineTypes; ++type) {
-            ink.styles.push_back(
-                line_style(settings, pipeline.film, static_cast<LineType>(type), object));
+            const auto line_type = static_cast<LineType>(type);
+            ink.styles.push_back(line_style(pipeline.film, settings.line_style(line_type, object)));
         }
+    }
+    if (!settings.draws_hidden()) return ink;
+    for (int object = 1; object <= told_apart; ++object) {
+        ink.styles.push_back(line_style(pipeline.film, settings.hidden_style(object)));
     }
     return ink;
 }
@@ -66,6 +72,13 @@ Edges::Edges(const Pipeline& shared)
     detect.depths = smooth_shading || wanted.has(LineType::self_occlusion) ||
                     wanted.has(LineType::boundary) || wanted.has(LineType::crease);
     detect.normals = smooth_shading || wanted.has(LineType::crease);
+    if (find_lines && shared.settings.draws_hidden()) {
+        // What a line of any type uncovers changes the layers behind it.
+        detect.depths = true;
+        for (int layer = 1; layer <= shared.settings.hidden_layers; ++layer) {
+            behind.push_back(make_peeled_frame(shared.scene, shared.tracer, *shared.frame, layer));
+        }
+    }
     const Camera& camera = shared.camera;
     detect.least_jump = 0.2F * camera.least_footprint() / static_cast<float>(q);
     const Camera::RayField& rays = camera.ray_field();
@@ -87,15 +100,30 @@ Edges::Edges(const Pipeline& shared)
 
 std::size_t Edges::style_of(const Segment& segment) const {
     const auto type = static_cast<std::size_t>(segment.type);
-    if (!styles_by_object || segment.owner == kBackground) return type;
-    return pipeline.ids.object_of(segment.owner) * kLineTypes + type;
+    const bool by_object = styles_by_object && segment.owner != kBackground;
+    const std::size_t object = by_object ? pipeline.ids.object_of(segment.owner) : 0;
+    if (!segment.hidden) return object * kLineTypes + type;
+    const std::size_t objects = styles_by_object ? pipeline.scene.objects().size() : 1;
+    return objects * kLineTypes + object;
+}
+
+std::size_t Edges::search_tile_at(Vec2f point) const {
+    const int side = pipeline.settings.tile;
+    const auto tile = [&](float at, int size) {
+        const int tiles = (size + 2 * margin + side - 1) / side;
+        return std::clamp((static_cast<int>(std::floor(at)) + margin) / side, 0, tiles - 1);
+    };
+    const Size size = pipeline.settings.size;
+    const int across = (size.width + 2 * margin + side - 1) / side;
+    return static_cast<std::size_t>(tile(point.y, size.height) * across +
+                                    tile(point.x, size.width));
 }
 
 namespace {
 
 /// Hands out what the drawing needs of the segments of all tiles.
 void keep_lines(const Edges& edges, const std::vector<std::vector<ColoredSegment>>& found,
-                Drawing& drawing) {
+                const std::vector<std::vector<Segment>>& hidden, Drawing& drawing) {
     drawing.spacing = 1.0F / static_cast<float>(edges.q);
     const Vec2f half{0.5F * drawing.spacing, 0.5F * drawing.spacing};
     const Tile& first = edges.search_tiles.front();
@@ -108,10 +136,31 @@ void keep_lines(const Edges& edges, const std::vector<std::vector<ColoredSegment
             const Segment& segment = line.segment;
             if (segment.left != segment.right || edges.wanted.has(segment.type)) {
                 drawing.segments.push_back(segment);
-                float& t = drawing.segments.back().t;
-                t = edges.pipeline.camera.distance_from_eye(segment.a, t) * edges.pipeline.unit;
             }
         }
+    }
+    drawing.hidden.clear();
+    for (const std::vector<Segment>& tile : hidden) {
+        drawing.hidden.insert(drawing.hidden.end(), tile.begin(), tile.end());
+    }
+    for (std::vector<Segment>* lines : {&drawing.segments, &drawing.hidden}) {
+        for (Segment& line : *lines) {
+            line.t = edges.pipeline.camera.distance_from_eye(line.a, line.t) * edges.pipeline.unit;
+        }
+    }
+}
+
+/// Joins the hidden lines of the whole picture, so that dashes do not start anew in every tile, and
+/// puts their strokes where the tiles that draw look for lines.
+void add_strokes(const Edges& edges, const std::vector<std::vector<Segment>>& hidden,
+                 std::vector<std::vector<ColoredSegment>>& found) {
+    std::vector<Segment> lines;
+    for (const std::vector<Segment>& tile : hidden) {
+        lines.insert(lines.end(), tile.begin(), tile.end());
+    }
+    for (const Segment& stroke : hidden_strokes(edges, lines)) {
+        const Vec2f middle = (stroke.a + stroke.b) * 0.5F;
+        found[edges.search_tile_at(middle)].push_back({stroke, {}, {}});
     }
 }
 
@@ -134,10 +183,15 @@ RenderStats render_edges(const Pipeline& pipeline, const RenderControl& control)
     const auto pool = static_cast<std::size_t>(threads);
 
     std::vector<std::vector<ColoredSegment>> found(edges.search_tiles.size());
+    std::vector<std::vector<Segment>> hidden(edges.search_tiles.size());
     std::vector<std::unique_ptr<LineFinder>> finders(pool);
+    std::vector<std::unique_ptr<HiddenLineFinder>> behind(pool);
     loop.run(edges.search_tiles.size(), [&](std::size_t i, std::size_t worker) {
         if (!finders[worker]) finders[worker] = std::make_unique<LineFinder>(edges);
         found[i] = finders[worker]->search(edges.search_tiles[i]);
+        if (edges.behind.empty()) return;
+        if (!behind[worker]) behind[worker] = std::make_unique<HiddenLineFinder>(edges);
+        hidden[i] = behind[worker]->search(edges.search_tiles[i], *finders[worker]);
     });
 
     LineDensity density = edges.no_lines;
@@ -145,7 +199,9 @@ RenderStats render_edges(const Pipeline& pipeline, const RenderControl& control)
         if (finder) density += finder->density();
     }
     density.finish();
-    if (pipeline.lines.drawing != nullptr) keep_lines(edges, found, *pipeline.lines.drawing);
+    if (pipeline.lines.drawing != nullptr)
+        keep_lines(edges, found, hidden, *pipeline.lines.drawing);
+    if (edges.draw_lines && !edges.behind.empty()) add_strokes(edges, hidden, found);
 
     std::vector<std::unique_ptr<LineDrawer>> drawers(pool);
     loop.run(edges.draw_tiles.size(), [&](std::size_t i, std::size_t worker) {
@@ -154,6 +210,7 @@ RenderStats render_edges(const Pipeline& pipeline, const RenderControl& control)
     });
 
     RenderStats total = total_of(finders);
+    total += total_of(behind);
     total += total_of(drawers);
     return total.mean_over(threads);
 }

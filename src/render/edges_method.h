@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <memory>
 #include <vector>
 
 #include "lines/density.h"
@@ -26,8 +27,10 @@ struct ColoredSegment {
 struct Edges {
     explicit Edges(const Pipeline& shared);
 
-    /// Index into the ink's styles.
+    /// Index into the ink's styles, of which those of hidden lines come last.
     std::size_t style_of(const Segment& segment) const;
+    /// Index of the tile that a point was searched in.
+    std::size_t search_tile_at(Vec2f point) const;
     bool wants_faces() const { return draw_lines && wanted.has(LineType::mesh); }
 
     const Pipeline& pipeline;
@@ -46,6 +49,8 @@ struct Edges {
     Viewpoint viewpoint;
     int margin;  ///< pixels searched beyond the film's edge, for lines that reach in
     std::vector<Tile> search_tiles, draw_tiles;
+    /// The surfaces behind the nearest ones, layer by layer; empty unless hidden lines are wanted.
+    std::vector<std::unique_ptr<FrameTracer>> behind;
 };
 
 }  // namespace ink

@@ -49,12 +49,14 @@ void LineFinder::trace_lattice(const Tile& tile) {
     hits_.resize(blocks_.size());
     normals_.resize(blocks_.size());
     sampler_.trace_blocks(blocks_, {}, hits_);
+    saw_anything_ = false;
     constexpr std::size_t kAhead = 4;
     for (std::size_t k = 0; k < blocks_.size(); ++k) {
         if (k + kAhead < blocks_.size()) edges_.pipeline.shader.prefetch(hits_[k + kAhead]);
         if (std::ranges::all_of(hits_[k].object, [](auto object) { return object == kNoObject; })) {
             continue;  // the grid is background so far
         }
+        saw_anything_ = true;
         edges_.pipeline.shader.smooth(hits_[k], normals_[k]);
         fill_grid(k);
     }
@@ -187,23 +189,24 @@ std::array<float, 4> LineFinder::color_at(int i, int j) const {
 std::vector<ColoredSegment> LineFinder::find_lines() {
     const Timer timer(stats_.lines_ms);
     if (!edges_.find_lines && !edges_.smooth_shading) return {};
-    if (edges_.wants_faces()) fill_faces();
+    if (wants_faces()) fill_faces();
     detect(grid_, edges_.detect, suspects_);
     sort_out_suspects();
     locator_.locate(grid_, std::span(suspects_).first(located_), describe_, sample_, crossings_);
-    if (edges_.wants_faces()) cross_faces();
+    if (wants_faces()) cross_faces();
     connector_.connect(grid_, suspects_, crossings_, segments_);
     stats_.crossings += crossings_.size();
 
     std::vector<ColoredSegment> found;
     found.reserve(segments_.size());
     for (const Segment& segment : segments_) {
-        const auto color = [&](std::uint32_t index) {
+        const auto color = [&](std::uint32_t index) -> std::array<float, 4> {
+            if (!front_) return {};
             const auto width = static_cast<std::uint32_t>(grid_.width);
             return color_at(static_cast<int>(index % width), static_cast<int>(index / width));
         };
         found.push_back({segment, color(segment.left_sample), color(segment.right_sample)});
-        if (edges_.draw_lines && edges_.wanted.has(segment.type)) {
+        if (front_ && edges_.draw_lines && edges_.wanted.has(segment.type)) {
             density_.add(segment, edges_.ink.styles[edges_.style_of(segment)].width_px);
         }
     }
@@ -240,6 +243,7 @@ void LineFinder::describe(std::size_t point, Sample& sample) const {
     const auto width = static_cast<std::size_t>(grid_.width);
     const LatticeHit hit = hit_at(static_cast<int>(point % width), static_cast<int>(point / width));
     edges_.surfaces.describe(*hit.hits, hit.lane, sample);
+    if (!front_) sample.ball = {};  // its outline and seams may lie on another layer
 }
 
 void LineFinder::fill_faces() {
@@ -265,7 +269,7 @@ void LineFinder::sort_out_suspects() {
     const auto others = std::ranges::stable_partition(
         suspects_, [](const SuspectEdge& edge) { return edge.suspicion != Suspicion::face; });
     located_ = static_cast<std::size_t>(others.begin() - suspects_.begin());
-    if (!edges_.wants_faces()) suspects_.resize(located_);
+    if (!wants_faces()) suspects_.resize(located_);
 }
 
 /// Adds the lines between faces of a mesh where there is no other line.
@@ -319,6 +323,7 @@ void LineFinder::sample(std::span<const Vec2f> points, std::span<Sample> out) {
                       {values[3][i], values[4][i], values[5][i]},
                       values[6][i]};
             edges_.surfaces.describe(point_hits_[k], i, sample);
+            if (!front_) sample.ball = {};
         }
     }
 }

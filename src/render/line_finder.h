@@ -23,29 +23,26 @@ namespace ink {
 /// near the scene.
 class LineFinder {
   public:
-    explicit LineFinder(const Edges& edges)
-        : edges_(edges),
-          sampler_(*edges.pipeline.frame, edges.pipeline.camera, edges.q),
-          pixel_sampler_(*edges.pipeline.frame, edges.pipeline.camera),
-          locator_(edges.viewpoint, edges.locate),
-          sample_([this](std::span<const Vec2f> points, std::span<Sample> out) {
-              sample(points, out);
-          }),
-          describe_([this](std::size_t point, Sample& sample) { describe(point, sample); }),
-          density_(edges.no_lines) {
-        if (edges.draw_lines && edges.wanted.has(LineType::ridge)) {
-            ridges_.emplace(edges.pipeline, edges.q);
-        }
-    }
+    explicit LineFinder(const Edges& edges) : LineFinder(edges, *edges.pipeline.frame, true) {}
+
+    /// On other surfaces than the nearest ones: what lies behind them is not shaded.
+    LineFinder(const Edges& edges, const FrameTracer& behind) : LineFinder(edges, behind, false) {}
 
     /// Design: trace the lattice, detect, locate, connect. Shades the tile's pixels on the way.
     std::vector<ColoredSegment> search(const Tile& tile) {
         trace_lattice(tile);
-        shade(tile);
+        if (front_) shade(tile);
         std::vector<ColoredSegment> found = find_lines();
         if (ridges_) add_ridges(tile, found);
         return found;
     }
+
+    /// Whether any ray of the last tile's lattice hit anything.
+    bool saw_anything() const { return saw_anything_; }
+    /// Of the last tile: where lines cross the edges of the lattice. They name these edges by their
+    /// index.
+    std::span<const Crossing> crossings() const { return crossings_; }
+    std::span<const SuspectEdge> crossed_edges() const { return suspects_; }
 
     /// Of the lines found so far that are to be drawn.
     const LineDensity& density() const { return density_; }
@@ -57,6 +54,23 @@ class LineFinder {
     }
 
   private:
+    LineFinder(const Edges& edges, const FrameTracer& frame, bool front)
+        : edges_(edges),
+          front_(front),
+          sampler_(frame, edges.pipeline.camera, edges.q),
+          pixel_sampler_(frame, edges.pipeline.camera),
+          locator_(edges.viewpoint, edges.locate),
+          sample_([this](std::span<const Vec2f> points, std::span<Sample> out) {
+              sample(points, out);
+          }),
+          describe_([this](std::size_t point, Sample& sample) { describe(point, sample); }),
+          density_(edges.no_lines) {
+        if (front && edges.draw_lines && edges.wanted.has(LineType::ridge)) {
+            ridges_.emplace(edges.pipeline, edges.q);
+        }
+    }
+
+    bool wants_faces() const { return front_ && edges_.wants_faces(); }
     void trace_lattice(const Tile& tile);
     void fill_grid(std::size_t block);
     void shade(const Tile& tile);
@@ -81,6 +95,8 @@ class LineFinder {
     static constexpr std::uint32_t kEmptyBlock = 0xFFFFFFFFU;
 
     const Edges& edges_;
+    bool front_;
+    bool saw_anything_ = false;
     Sampler sampler_;
     Sampler pixel_sampler_;
     Locator locator_;

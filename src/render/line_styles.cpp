@@ -23,7 +23,8 @@ void read_target(std::string_view text, LineRule& rule) {
     const std::size_t at = text.find('@');
     if (at != std::string_view::npos) rule.object = read_int(text.substr(at + 1), 1, kMostObjects);
     const std::string_view type = trim(text.substr(0, at));
-    if (type != "all") rule.type = read_line_type(type);
+    rule.hidden = type == "hidden";
+    if (type != "all" && !rule.hidden) rule.type = read_line_type(type);
 }
 
 void read_property(std::string_view key, std::string_view value, LineRule& rule) {
@@ -67,7 +68,10 @@ std::string print(const LineRule& rule) {
     if (rule.width) properties.push_back(fmt::format("width={}", print(*rule.width)));
     if (rule.color) properties.push_back(fmt::format("color={}", to_string(*rule.color)));
     if (rule.opacity) properties.push_back(fmt::format("opacity={}", *rule.opacity));
-    return fmt::format("{}{}:{}", rule.type ? name_of(*rule.type) : "all",
+    return fmt::format("{}{}:{}",
+                       rule.hidden ? "hidden"
+                       : rule.type ? name_of(*rule.type)
+                                   : "all",
                        rule.object > 0 ? fmt::format("@{}", rule.object) : "",
                        fmt::join(properties, ","));
 }
@@ -79,7 +83,8 @@ std::string_view name_of(LineType type) { return kNames[static_cast<std::size_t>
 LineType read_line_type(std::string_view text) {
     const auto found = std::ranges::find(kNames, text);
     if (found == kNames.end()) {
-        throw UsageError(fmt::format("'{}' is not one of {}, all", text, fmt::join(kNames, ", ")));
+        throw UsageError(
+            fmt::format("'{}' is not one of {}, all, hidden", text, fmt::join(kNames, ", ")));
     }
     return static_cast<LineType>(found - kNames.begin());
 }

@@ -15,14 +15,17 @@ namespace ink {
 /// as it is.
 struct LineRule {
     std::optional<LineType> type;  ///< of every type if open
+    bool hidden = false;           ///< instead: hidden lines, whatever their type
     int object = 0;                ///< counted from 1 in the order of the scene; 0: of every object
     std::optional<Length> width;
     std::optional<Rgb8> color;
     std::optional<double> opacity;  ///< [0, 1]
 
     bool applies(LineType of_type, int of_object) const {
-        return (!type || *type == of_type) && (object == 0 || object == of_object);
+        return !hidden && (!type || *type == of_type) && concerns(of_object);
     }
+    bool applies_to_hidden(int of_object) const { return hidden && concerns(of_object); }
+    bool concerns(int of_object) const { return object == 0 || object == of_object; }
 };
 
 /// How a line is drawn after all rules.
@@ -38,8 +41,8 @@ std::string_view name_of(LineType type);
 /// Throws UsageError for a name that is none.
 LineType read_line_type(std::string_view text);
 
-/// Reads "TYPE[@OBJECT]:key=value,...", several with semicolons between. TYPE is a line type or
-/// all; keys are width, color and opacity. Throws UsageError.
+/// Reads "TYPE[@OBJECT]:key=value,...", several with semicolons between. TYPE is a line type, all
+/// or hidden; keys are width, color and opacity. Throws UsageError.
 std::vector<LineRule> read_line_rules(std::string_view text);
 /// In the form that read_line_rules reads.
 std::string print(const std::vector<LineRule>& rules);

@@ -29,6 +29,7 @@ struct Pipeline {
     Pipeline(const Scene& all_objects, const Tracer& scene_tracer, const Settings& all,
              Film& target, const LineOutput& line_output)
         : scene(all_objects),
+          tracer(scene_tracer),
           settings(all),
           camera(scene, all.view, all.size),
           frame(scene_tracer.frame(camera.projection(), all.threads)),
@@ -49,6 +50,7 @@ struct Pipeline {
     }
 
     const Scene& scene;
+    const Tracer& tracer;
     const Settings& settings;
     Camera camera;
     std::unique_ptr<FrameTracer> frame;

@@ -194,6 +194,36 @@ std::string print(const Metric& metric) {
     return {};
 }
 
+/// "dashed:6,2": lengths of dash and gap in line widths.
+HiddenLines read_hidden(std::string_view text) {
+    using Kind = HiddenLines::Kind;
+    if (text == "none") return {Kind::none};
+    if (text == "solid") return {Kind::solid};
+    if (text == "dashed") return {Kind::dashed};
+    if (text.starts_with("dashed:")) {
+        const auto lengths = split(text.substr(7), ',');
+        const auto dash = parse_double(lengths[0]);
+        const auto gap = lengths.size() == 2 ? parse_double(lengths[1]) : std::nullopt;
+        const bool good = dash && gap && *dash >= 1.0 && *gap >= 0.1;
+        if (good && *dash <= 1000.0 && *gap <= 1000.0) return {Kind::dashed, *dash, *gap};
+    }
+    throw UsageError(fmt::format(
+        "'{}' is not one of none, solid, dashed, dashed:DASH,GAP with a dash from 1 and "
+        "a gap from 0.1 to 1000 line widths",
+        text));
+}
+
+std::string print(const HiddenLines& hidden) {
+    const HiddenLines usual;
+    switch (hidden.kind) {
+        case HiddenLines::Kind::none: return "none";
+        case HiddenLines::Kind::solid: return "solid";
+        case HiddenLines::Kind::dashed: break;
+    }
+    if (hidden.dash == usual.dash && hidden.gap == usual.gap) return "dashed";
+    return fmt::format("dashed:{},{}", hidden.dash, hidden.gap);
+}
+
 AntiAliasing read_aa(std::string_view text) {
     if (text == "none") return {AntiAliasing::Kind::none, 1};
     if (text == "edges") return {AntiAliasing::Kind::edges, 1};
@@ -344,13 +374,23 @@ std::vector<Setting> make_table() {
          [](S& s, Text t) { s.line_color = read_color(t); },
          [](const S& s) { return to_string(s.line_color); }, false, color()},
         {"line", "Lines", "RULE",
-         "Method edges: TYPE:width=LEN,color=COLOR,opacity=F for lines of one type, or all; "
+         "Method edges: TYPE:width=LEN,color=COLOR,opacity=F for lines of one type, all or hidden; "
          "TYPE@K:... for those of the K-th object alone; may be repeated",
          [](S& s, Text t) {
              if (t.empty()) return s.line_rules.clear();
              for (LineRule& rule : read_line_rules(t)) s.line_rules.push_back(rule);
          },
          [](const S& s) { return print(s.line_rules); }, true},
+        {"hidden", "Lines", "HOW",
+         "Method edges: lines on surfaces behind others: none, solid, dashed, or dashed:DASH,GAP "
+         "in "
+         "line widths; half as wide as others unless --line hidden:... says so",
+         [](S& s, Text t) { s.hidden = read_hidden(t); },
+         [](const S& s) { return print(s.hidden); }},
+        {"hidden-layers", "Lines", "N",
+         "Hidden lines: how many surfaces behind the first one are looked at",
+         [](S& s, Text t) { s.hidden_layers = read_int(t, 1, 64); },
+         [](const S& s) { return fmt::format("{}", s.hidden_layers); }},
         {"ids", "Lines", "LEVEL",
          "Between what lines run: primitive (atoms, particles, triangles), part (chains, groups), "
          "part:chain, part:residue, part:entity, part:element, part:FIELD or object; by default "
@@ -513,15 +553,38 @@ void check_memory(const Settings& settings, int color_bytes) {
 
 }  // namespace
 
+namespace {
+
+void follow(const LineRule& rule, const Settings& settings, StrokeStyle& style) {
+    if (rule.width) style.width_px = rule.width->pixels(settings.dpi, settings.size.height);
+    style.color = rule.color.value_or(style.color);
+    style.opacity = rule.opacity.value_or(style.opacity);
+}
+
+}  // namespace
+
 StrokeStyle Settings::line_style(LineType type, int object) const {
     StrokeStyle style{line_width_px(), line_color, 1.0};
     for (const LineRule& rule : line_rules) {
-        if (!rule.applies(type, object)) continue;
-        if (rule.width) style.width_px = rule.width->pixels(dpi, size.height);
-        style.color = rule.color.value_or(style.color);
-        style.opacity = rule.opacity.value_or(style.opacity);
+        if (rule.applies(type, object)) follow(rule, *this, style);
     }
     return style;
+}
+
+StrokeStyle Settings::hidden_style(int object) const {
+    StrokeStyle style{0.5 * line_width_px(), line_color, 1.0};
+    for (const LineRule& rule : line_rules) {
+        if (rule.applies_to_hidden(object)) follow(rule, *this, style);
+    }
+    return style;
+}
+
+std::optional<Dashes> Settings::hidden_dashes(double width_px, double length_px,
+                                              bool closed) const {
+    if (hidden.kind != HiddenLines::Kind::dashed) return std::nullopt;
+    // Round ends take half a width on either side.
+    const Dashes usual{(hidden.dash - 1.0) * width_px, (hidden.gap + 1.0) * width_px};
+    return fit_dashes(usual, length_px, closed);
 }
 
 Metric Settings::profile() const {
@@ -547,6 +610,9 @@ int Settings::lattice_points() const {
 
 void validate(const Settings& settings, int color_bytes) {
     check_memory(settings, color_bytes);
+    if (settings.draws_hidden() && settings.method != Method::edges) {
+        throw UsageError("--hidden: hidden lines are found by method edges only");
+    }
     const auto check_width = [&](std::string_view name, const Length& length) {
         const double width = length.pixels(settings.dpi, settings.size.height);
         constexpr double kWidest = 1000.0;

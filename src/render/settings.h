@@ -12,6 +12,7 @@
 #include "base/image.h"
 #include "camera/camera.h"
 #include "film/film.h"
+#include "lines/dashes.h"
 #include "lines/line_type.h"
 #include "lines/stencil_features.h"
 #include "lines/strength.h"
@@ -47,6 +48,14 @@ enum class Fill : std::uint8_t {
     image  ///< the shaded picture, embedded
 };
 
+/// How lines on surfaces behind others are drawn.
+struct HiddenLines {
+    enum class Kind : std::uint8_t { none, dashed, solid };
+    Kind kind = Kind::none;
+    /// Of a dash and of the gap after it, in line widths: ISO 128-2, line type 02.
+    double dash = 12.0, gap = 3.0;
+};
+
 enum class LineBlend : std::uint8_t { automatic, display, linear };
 
 /// Everything that decides what a picture looks like. settings_table() is the way in for text.
@@ -77,6 +86,9 @@ struct Settings {
     double ridge_turn_deg = 3.0;   ///< that a normal turns in 1 % of the height, least
     StencilThresholds thresholds;  ///< of method "stencil"
 
+    HiddenLines hidden;
+    int hidden_layers = 4;  ///< surfaces behind the first one that are looked at
+
     Compose compose = Compose::both;
     ShadingSettings shading;
 
@@ -95,6 +107,11 @@ struct Settings {
     double ridge_scale_px() const { return ridge_scale.pixels(dpi, size.height); }
     /// How lines of a type are drawn that belong to an object, counted from 1.
     StrokeStyle line_style(LineType type, int object) const;
+    /// Likewise, of hidden lines.
+    StrokeStyle hidden_style(int object) const;
+    /// The dashes of such a line of this length; nothing if it is solid.
+    std::optional<Dashes> hidden_dashes(double width_px, double length_px, bool closed) const;
+    bool draws_hidden() const { return hidden.kind != HiddenLines::Kind::none && draws_lines(); }
     bool draws_lines() const { return compose != Compose::shaded && !lines.empty(); }
     /// The metric that is set, or else the method's own.
     Metric profile() const;

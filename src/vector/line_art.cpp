@@ -1,5 +1,6 @@
 #include "vector/line_art.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "lines/fit_chains.h"
@@ -27,6 +28,29 @@ std::optional<Rgb8> paper(const Settings& settings) {
     return settings.shading.background;
 }
 
+/// Moves the lines that were asked for into the drawing, with their styles.
+void add_lines(const Settings& settings, ChainGraph& graph, std::vector<Curve>& curves,
+               LineArt& art) {
+    const double shortest = settings.min_length.pixels(settings.dpi, settings.size.height);
+    for (std::size_t k = 0; k < graph.chains.size(); ++k) {
+        Chain& chain = graph.chains[k];
+        if (!settings.lines.has(chain.type)) continue;
+        const double least = chain.hidden ? std::max(shortest, kShortestHidden) : shortest;
+        const double size = least > 0.0 ? length_of(chain) : 0.0;
+        if (size < least) continue;
+        const GeometryId owner = front(chain) != kBackground ? front(chain) : behind(chain);
+        const auto object = static_cast<int>(art.names.object_of(owner)) + 1;
+        const StrokeStyle style =
+            chain.hidden ? settings.hidden_style(object) : settings.line_style(chain.type, object);
+        art.styles.push_back(style);
+        art.dashes.push_back(chain.hidden
+                                 ? settings.hidden_dashes(style.width_px, size, chain.closed)
+                                 : std::nullopt);
+        art.chains.push_back(std::move(chain));
+        art.curves.push_back(std::move(curves[k]));
+    }
+}
+
 }  // namespace
 
 LineArt make_line_art(const Scene& scene, const Settings& settings, const Drawing& drawing,
@@ -40,8 +64,8 @@ LineArt make_line_art(const Scene& scene, const Settings& settings, const Drawin
 
     ChainGraph graph = chain_segments(drawing.segments, drawing.spacing);
     place_junctions(graph, drawing.spacing);
-    std::vector<Curve> curves =
-        fit_chains(graph, {.tolerance = settings.curve_tolerance_px}, settings.threads);
+    const FitSettings fit{.tolerance = settings.curve_tolerance_px};
+    std::vector<Curve> curves = fit_chains(graph, fit, settings.threads);
 
     const Fill fill = settings.compose == Compose::lines ? Fill::none : settings.fill;
     if (fill == Fill::flat) {
@@ -51,17 +75,12 @@ LineArt make_line_art(const Scene& scene, const Settings& settings, const Drawin
     if (fill == Fill::image) art.image = image;
 
     if (!settings.draws_lines()) return art;
-    const double shortest = settings.min_length.pixels(settings.dpi, settings.size.height);
-    for (std::size_t k = 0; k < graph.chains.size(); ++k) {
-        Chain& chain = graph.chains[k];
-        if (!settings.lines.has(chain.type)) continue;
-        if (shortest > 0.0 && length_of(chain) < shortest) continue;
-        const GeometryId owner = front(chain) != kBackground ? front(chain) : behind(chain);
-        const auto object = static_cast<int>(art.names.object_of(owner)) + 1;
-        art.styles.push_back(settings.line_style(chain.type, object));
-        art.chains.push_back(std::move(chain));
-        art.curves.push_back(std::move(curves[k]));
-    }
+    add_lines(settings, graph, curves, art);
+    if (drawing.hidden.empty()) return art;
+    ChainGraph hidden = chain_segments(drawing.hidden, drawing.spacing);
+    place_junctions(hidden, drawing.spacing);
+    std::vector<Curve> hidden_curves = fit_chains(hidden, fit, settings.threads);
+    add_lines(settings, hidden, hidden_curves, art);
     return art;
 }
 

@@ -9,6 +9,7 @@
 #include "base/color.h"
 #include "base/image.h"
 #include "lines/chain.h"
+#include "lines/dashes.h"
 #include "lines/fit.h"
 #include "lines/line_type.h"
 #include "render/drawing.h"
@@ -36,6 +37,7 @@ struct LineArt {
     std::vector<Chain> chains;        ///< of the types that were asked for; t in units of the file
     std::vector<Curve> curves;        ///< one a chain
     std::vector<StrokeStyle> styles;  ///< one a chain
+    std::vector<std::optional<Dashes>> dashes;  ///< likewise; nothing: a solid line
     GeometryNames names;
 };
 

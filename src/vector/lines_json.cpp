@@ -49,10 +49,11 @@ Json geometries(const LineArt& art) {
 void append_line(std::string& text, const Chain& chain) {
     const auto out = std::back_inserter(text);
     fmt::format_to(out,
-                   "{{\"type\":\"{}\",\"left\":{},\"right\":{},\"front\":\"{}\",\"closed\":{},"
+                   "{{\"type\":\"{}\",\"left\":{},\"right\":{},\"front\":\"{}\",\"closed\":{},{}"
                    "\"strength\":{:.4g},\"points\":[",
                    name_of(chain.type), chain.left, chain.right,
-                   chain.left_in_front ? "left" : "right", chain.closed, chain.strength);
+                   chain.left_in_front ? "left" : "right", chain.closed,
+                   chain.hidden ? "\"hidden\":true," : "", chain.strength);
     for (std::size_t k = 0; k < chain.points.size(); ++k) {
         fmt::format_to(out, "{}[{:.3f},{:.3f},{:.7g}]", k == 0 ? "" : ",", chain.points[k].x,
                        chain.points[k].y, chain.t[k]);

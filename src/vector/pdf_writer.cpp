@@ -3,6 +3,7 @@
 #include <cairo-pdf.h>
 #include <cairo.h>
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <new>
@@ -94,15 +95,21 @@ void draw_regions(cairo_t* cr, const LineArt& art) {
     }
 }
 
-void draw_layer(cairo_t* cr, const LineArt& art, LineType type) {
+template <class Belongs>
+void draw_layer(cairo_t* cr, const LineArt& art, const Belongs& belongs) {
     for (std::size_t k = 0; k < art.chains.size(); ++k) {
         const Chain& chain = art.chains[k];
-        if (chain.type != type) continue;
+        if (!belongs(chain)) continue;
         const StrokeStyle& style = art.styles[k];
         add_curve(cr, art.curves[k], chain.closed);
         cairo_set_line_width(cr, style.width_px);
         set_color(cr, style.color, style.opacity * double{chain.strength});
+        if (const auto& dashes = art.dashes[k]) {
+            const std::array<double, 2> lengths{dashes->stroke, dashes->gap};
+            cairo_set_dash(cr, lengths.data(), 2, 0.0);
+        }
         cairo_stroke(cr);
+        cairo_set_dash(cr, nullptr, 0, 0.0);
     }
 }
 
@@ -142,7 +149,11 @@ void encode_pdf(ByteSink& sink, const LineArt& art) {
     cairo_set_line_cap(cr, CAIRO_LINE_CAP_ROUND);
     cairo_set_line_join(cr, CAIRO_LINE_JOIN_ROUND);
     draw_regions(cr, art);
-    for (const LineType type : kLayers) draw_layer(cr, art, type);
+    draw_layer(cr, art, [](const Chain& chain) { return chain.hidden; });
+    for (const LineType type : kLayers) {
+        draw_layer(cr, art,
+                   [type](const Chain& chain) { return chain.type == type && !chain.hidden; });
+    }
     cairo_show_page(cr);
     check(cairo_status(cr));
     cairo_surface_finish(surface.get());

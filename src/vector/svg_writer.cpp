@@ -87,10 +87,11 @@ class SvgText {
     void add_paper();
     void add_regions();
     void add_lines();
-    void add_layer(LineType type);
+    template <class Belongs>
+    void add_layer(std::string_view name, const Belongs& belongs);
     void add_line(std::size_t k, const StrokeStyle& usual);
     void add_style(const StrokeStyle& style);
-    void add_names(GeometryId id);
+    void add_names(GeometryId id, std::string_view also_of_class = {});
 
     const LineArt& art_;
     std::string text_;
@@ -127,9 +128,11 @@ void SvgText::add_paper() {
 }
 
 /// Classes and data- attributes that say what is shown.
-void SvgText::add_names(GeometryId id) {
+void SvgText::add_names(GeometryId id, std::string_view also) {
     const GeometryName name = art_.names(id);
-    std::string classes = class_name("object-", name.object);
+    std::string classes(also);
+    if (!also.empty()) classes += ' ';
+    classes += class_name("object-", name.object);
     if (!name.part.empty()) classes.append(class_name(" part-", name.part));
     if (!name.element.empty()) classes.append(class_name(" element-", name.element));
     add(" class=\"{}\" data-object=\"{}\"", classes, xml_text(name.object));
@@ -158,16 +161,16 @@ void SvgText::add_style(const StrokeStyle& style) {
 }
 
 /// A group whose style is that of its first line; others of another style say so themselves.
-void SvgText::add_layer(LineType type) {
-    const auto first = std::ranges::find(art_.chains, type, &Chain::type);
+template <class Belongs>
+void SvgText::add_layer(std::string_view name, const Belongs& belongs) {
+    const auto first = std::ranges::find_if(art_.chains, belongs);
     if (first == art_.chains.end()) return;
     const StrokeStyle& usual = art_.styles[static_cast<std::size_t>(first - art_.chains.begin())];
-    add("<g id=\"{0}\" class=\"{0}\" inkscape:groupmode=\"layer\" inkscape:label=\"{0}\"",
-        name_of(type));
+    add("<g id=\"{0}\" class=\"{0}\" inkscape:groupmode=\"layer\" inkscape:label=\"{0}\"", name);
     add_style(usual);
     text_ += ">\n";
     for (std::size_t k = 0; k < art_.chains.size(); ++k) {
-        if (art_.chains[k].type == type) add_line(k, usual);
+        if (belongs(art_.chains[k])) add_line(k, usual);
     }
     text_ += "</g>\n";
 }
@@ -175,7 +178,7 @@ void SvgText::add_layer(LineType type) {
 void SvgText::add_line(std::size_t k, const StrokeStyle& usual) {
     const Chain& chain = art_.chains[k];
     text_ += "<path";
-    add_names(front(chain));
+    add_names(front(chain), chain.hidden ? name_of(chain.type) : "");
     if (behind(chain) != front(chain) && behind(chain) != kBackground) {
         add(" data-behind=\"{}\"", xml_text(art_.names(behind(chain)).label()));
     }
@@ -183,6 +186,9 @@ void SvgText::add_line(std::size_t k, const StrokeStyle& usual) {
     if (style.color != usual.color || style.width_px != usual.width_px) add_style(style);
     const double opacity = style.opacity * static_cast<double>(chain.strength);
     if (opacity < 0.995) add(" stroke-opacity=\"{:.2f}\"", opacity);
+    if (art_.dashes[k]) {
+        add(" stroke-dasharray=\"{:.2f} {:.2f}\"", art_.dashes[k]->stroke, art_.dashes[k]->gap);
+    }
     text_ += " d=\"";
     append_curve(text_, art_.curves[k], chain.closed);
     text_ += "\"/>\n";
@@ -191,7 +197,11 @@ void SvgText::add_line(std::size_t k, const StrokeStyle& usual) {
 void SvgText::add_lines() {
     if (art_.chains.empty()) return;
     text_ += "<g id=\"lines\" fill=\"none\" stroke-linecap=\"round\" stroke-linejoin=\"round\">\n";
-    for (const LineType type : kLayers) add_layer(type);
+    add_layer("hidden", [](const Chain& chain) { return chain.hidden; });
+    for (const LineType type : kLayers) {
+        add_layer(name_of(type),
+                  [type](const Chain& chain) { return chain.type == type && !chain.hidden; });
+    }
     text_ += "</g>\n";
 }
 
