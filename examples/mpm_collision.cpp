@@ -2,11 +2,10 @@
 // draws. MLS-MPM with quadratic B-splines (Hu et al., A Moving Least Squares Material Point Method,
 // SIGGRAPH 2018, after Sulsky, Zhou and Schreyer 1995) of a neo-Hookean solid, in 3D.
 //
-//     mpm_collision OUT [TIME]     writes OUT.csv, OUT-boxes.json and OUT-ellipsoids.json
-//     inktrace render OUT-boxes.json -o boxes.png
+//     mpm_collision OUT.csv [TIME]
+//     inktrace render OUT.csv --glyph box --color-by body --colormap categories -o boxes.png
 //
-// OUT.csv has a row for each particle: x, y, z, radius, body and the deformation gradient, row by
-// row. The scenes draw each particle as its box or ball under that gradient.
+// The table has a row for each particle: x, y, z, body, and the deformation gradient F, row by row.
 
 #include <array>
 #include <cmath>
@@ -195,10 +194,10 @@ class Simulation {
 
 void write_csv(const std::string& file, const std::vector<Particle>& particles) {
     std::ofstream out(file);
-    out << "x,y,z,radius,body,F11,F12,F13,F21,F22,F23,F31,F32,F33\n";
+    out.precision(5);
+    out << "x,y,z,body,F11,F12,F13,F21,F22,F23,F31,F32,F33\n";
     for (const Particle& p : particles) {
-        out << p.position[0] << ',' << p.position[1] << ',' << p.position[2] << ','
-            << 0.55 * Simulation::kSpacing << ',' << p.body;
+        out << p.position[0] << ',' << p.position[1] << ',' << p.position[2] << ',' << p.body;
         for (const Vector& row : p.deformation) {
             for (const double value : row) out << ',' << value;
         }
@@ -206,45 +205,14 @@ void write_csv(const std::string& file, const std::vector<Particle>& particles) 
     }
 }
 
-/// Each particle's box or ball under its deformation gradient: half axes are F's columns.
-void write_scene(const std::string& file, const std::string& shape,
-                 const std::vector<Particle>& particles) {
-    std::ofstream out(file);
-    out.precision(4);
-    out << "{\n  \"inktrace\": 1,\n  \"objects\": [";
-    for (int body = 0; body < 2; ++body) {
-        out << (body == 0 ? "\n" : ",\n") << R"(    {"type": "glyphs", "name": "body )" << body
-            << R"(", "shape": ")" << shape << R"(", "color": ")"
-            << (body == 0 ? "#e0a030" : "#6a9fd8") << R"(", "glyphs": [)";
-        bool first = true;
-        for (const Particle& p : particles) {
-            if (p.body != body) continue;
-            out << (first ? "\n" : ",\n") << "      [" << p.position[0] << ", " << p.position[1]
-                << ", " << p.position[2];
-            for (std::size_t axis = 0; axis < 3; ++axis) {
-                for (std::size_t row = 0; row < 3; ++row) {
-                    out << ", " << 0.5 * Simulation::kSpacing * p.deformation[row][axis];
-                }
-            }
-            out << ']';
-            first = false;
-        }
-        out << "]}";
-    }
-    out << "\n  ]\n}\n";
-}
-
 }  // namespace
 
 int main(int argc, char** argv) {
     if (argc < 2) {
-        std::fprintf(stderr, "usage: mpm_collision OUT [TIME]\n");
+        std::fprintf(stderr, "usage: mpm_collision OUT.csv [TIME]\n");
         return 2;
     }
-    const std::string out = argv[1];
     Simulation simulation;
     simulation.run(argc > 2 ? std::atof(argv[2]) : 0.022);
-    write_csv(out + ".csv", simulation.particles());
-    write_scene(out + "-boxes.json", "box", simulation.particles());
-    write_scene(out + "-ellipsoids.json", "ellipsoid", simulation.particles());
+    write_csv(argv[1], simulation.particles());
 }

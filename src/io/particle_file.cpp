@@ -86,20 +86,19 @@ FileContents particle_contents(const std::filesystem::path& file, std::string_vi
     return contents;
 }
 
-ParticleColumns::ParticleColumns(const std::filesystem::path& file, std::vector<std::string> names,
-                                 const ReadOptions& options)
+ParticleColumns::ParticleColumns(const std::filesystem::path& file,
+                                 const std::vector<std::string>& names, const ReadOptions& options)
     : summarize_(options.summarize) {
-    for (std::string& name : names)
-        columns_.push_back({std::move(name), false, -1, {}, kMax, -kMax});
+    for (const std::string& name : names) columns_.push_back({name, false, -1, {}, kMax, -kMax});
     find_axes(file);
+    std::vector<std::string> others;
     for (const Column& column : columns_) {
-        if (is_radius_name(column.name) || is_diameter_name(column.name)) {
-            if (options.data.radius.empty()) request(column.name);
-        }
+        if (options.facts && column.axis < 0) others.push_back(column.name);
     }
-    for (const std::string& name : requested_fields(options.data)) request(name);
-    for (std::size_t c = 0; options.facts && c < columns_.size(); ++c) {
-        if (columns_[c].axis < 0) request(columns_[c].name);
+    FieldLayout layout = lay_out_fields(names, options.data, others);
+    particles_.fields = std::move(layout.fields);
+    for (std::size_t c = 0; c < columns_.size(); ++c) {
+        columns_[c].destinations = std::move(layout.of_column[c]);
     }
     for (std::size_t c = 0; c < columns_.size(); ++c) {
         Column& column = columns_[c];
@@ -130,66 +129,13 @@ void ParticleColumns::find_axes(const std::filesystem::path& file) {
     }
 }
 
-/// The columns of a vector: vx vy vz for "v", c_s[1] c_s[2] for "c_s", v:0 v:1 v:2 for "v".
-std::vector<std::size_t> ParticleColumns::vector_columns(const std::string& name) const {
-    const auto index = [&](const std::string& column) -> std::optional<std::size_t> {
-        const auto found = std::ranges::find(columns_, column, &Column::name);
-        if (found == columns_.end()) return std::nullopt;
-        return static_cast<std::size_t>(found - columns_.begin());
-    };
-    const auto series = [&](auto component_name, int first) {
-        std::vector<std::size_t> found;
-        for (int k = first;; ++k) {
-            const auto column = index(component_name(k));
-            if (!column) return found;
-            found.push_back(*column);
-        }
-    };
-    const std::array candidates{
-        series([&](int k) { return fmt::format("{}{}", name, k < 3 ? "xyz"[k] : '?'); }, 0),
-        series([&](int k) { return fmt::format("{}_{}", name, k < 3 ? "xyz"[k] : '?'); }, 0),
-        series([&](int k) { return fmt::format("{}[{}]", name, k); }, 1),
-        series([&](int k) { return fmt::format("{}:{}", name, k); }, 0),
-        series([&](int k) { return fmt::format("{}_{}", name, k); }, 0)};
-    for (const auto& columns : candidates) {
-        if (columns.size() > 1) return columns;
-    }
-    return {};
-}
-
-void ParticleColumns::request(const std::string& name) {
-    for (const Field& field : particles_.fields) {
-        if (field.name == name) return;
-    }
-    const auto column = std::ranges::find(columns_, name, &Column::name);
-    if (column != columns_.end()) {
-        keep(name, {static_cast<std::size_t>(column - columns_.begin())});
-        return;
-    }
-    if (const auto columns = vector_columns(name); !columns.empty()) {
-        keep(name, columns);
-        return;
-    }
-    // "v.x" of the columns vx, vy, vz.
-    const std::size_t dot = name.rfind('.');
-    if (dot != std::string::npos && dot > 0) request(name.substr(0, dot));
-}
-
-void ParticleColumns::keep(std::string_view field, const std::vector<std::size_t>& columns) {
-    particles_.fields.push_back({std::string(field), columns.size(), {}});
-    for (std::size_t component = 0; component < columns.size(); ++component) {
-        columns_[columns[component]].destinations.push_back(slots_.size());
-        slots_.push_back({particles_.fields.size() - 1, component});
-    }
-}
-
 void ParticleColumns::reserve(std::size_t rows) {
     particles_.positions.reserve(rows);
     for (Field& field : particles_.fields) field.values.reserve(rows * field.components);
 }
 
 bool ParticleColumns::add_row(std::string_view row, char separator, std::string& problem) {
-    std::array<double, 3> place{};
+    std::array<double, 3> position{};
     for (Field& field : particles_.fields)
         field.values.resize(field.values.size() + field.components);
     for (std::size_t c = 0; c <= last_needed_; ++c) {
@@ -207,10 +153,10 @@ bool ParticleColumns::add_row(std::string_view row, char separator, std::string&
             problem = fmt::format("column '{}' is {}, not a number", column.name, excerpt(word));
             return false;
         }
-        if (column.axis >= 0) place[static_cast<std::size_t>(column.axis)] = value;
-        for (const std::size_t d : column.destinations) {
-            Field& field = particles_.fields[slots_[d].field];
-            field.values[field.values.size() - field.components + slots_[d].component] =
+        if (column.axis >= 0) position[static_cast<std::size_t>(column.axis)] = value;
+        for (const FieldLayout::Place place : column.destinations) {
+            Field& field = particles_.fields[place.field];
+            field.values[field.values.size() - field.components + place.component] =
                 static_cast<float>(value);
         }
         if (summarize_ && std::isfinite(value)) {
@@ -218,7 +164,7 @@ bool ParticleColumns::add_row(std::string_view row, char separator, std::string&
             column.most = std::max(column.most, value);
         }
     }
-    const Vec3d p{place[0], place[1], place[2]};
+    const Vec3d p{position[0], position[1], position[2]};
     if (particles_.positions.empty() && std::isfinite(p.x + p.y + p.z)) particles_.origin = p;
     particles_.positions.push_back(to_float(p - particles_.origin));
     return true;

@@ -2,11 +2,11 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "io/particle_fields.h"
 #include "io/reader.h"
 #include "scene/particles.h"
 
@@ -23,7 +23,7 @@ FileContents particle_contents(const std::filesystem::path& file, std::string_vi
 class ParticleColumns {
   public:
     /// Throws InputError where there are no columns x, y and z.
-    ParticleColumns(const std::filesystem::path& file, std::vector<std::string> names,
+    ParticleColumns(const std::filesystem::path& file, const std::vector<std::string>& names,
                     const ReadOptions& options);
 
     void reserve(std::size_t rows);
@@ -40,21 +40,14 @@ class ParticleColumns {
     struct Column {
         std::string name;
         bool needed = false;
-        int axis = -1;                          ///< 0, 1, 2: a coordinate
-        std::vector<std::size_t> destinations;  ///< places in `slots_`
-        double least, most;                     ///< of the finite values
-    };
-    struct Slot {
-        std::size_t field, component;
+        int axis = -1;  ///< 0, 1, 2: a coordinate
+        std::vector<FieldLayout::Place> destinations;
+        double least, most;  ///< of the finite values
     };
 
     void find_axes(const std::filesystem::path& file);
-    void request(const std::string& name);
-    void keep(std::string_view field, const std::vector<std::size_t>& columns);
-    std::vector<std::size_t> vector_columns(const std::string& name) const;
 
     std::vector<Column> columns_;
-    std::vector<Slot> slots_;
     std::size_t last_needed_ = 0;
     bool summarize_ = false;
     std::array<bool, 3> scaled_{};

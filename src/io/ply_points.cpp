@@ -18,11 +18,10 @@ using Path = std::filesystem::path;
 
 /// Where the numbers of a point go.
 struct PointLayout {
-    static constexpr std::size_t kNowhere = std::numeric_limits<std::size_t>::max();
     struct Target {
         int axis = -1;   ///< 0, 1, 2: a coordinate
         int color = -1;  ///< 0, 1, 2: red, green, blue
-        std::size_t field = kNowhere;
+        std::vector<FieldLayout::Place> fields;
         FieldSummary summary;
     };
     std::vector<Target> targets;  ///< a property
@@ -36,21 +35,24 @@ int index_in(std::string_view name, const std::array<std::string_view, 3>& names
 }
 
 PointLayout make_layout(const Element& points, const ReadOptions& options, Particles& particles) {
-    const std::vector<std::string> asked = requested_fields(options.data);
-    PointLayout layout;
+    std::vector<std::string> names;
+    std::vector<std::string> others;
     for (const Property& property : points.properties) {
+        names.push_back(property.length_type ? std::string() : property.name);
+        const bool is_place = index_in(property.name, {"x", "y", "z"}) >= 0;
+        if (options.facts && !property.length_type && !is_place) others.push_back(property.name);
+    }
+    FieldLayout fields = lay_out_fields(names, options.data, others);
+    particles.fields = std::move(fields.fields);
+    PointLayout layout;
+    for (std::size_t k = 0; k < points.properties.size(); ++k) {
+        const Property& property = points.properties[k];
         PointLayout::Target target;
         constexpr double kMax = std::numeric_limits<double>::max();
         target.summary = {property.name, 1, kMax, -kMax};
         target.axis = index_in(property.name, {"x", "y", "z"});
         target.color = index_in(property.name, {"red", "green", "blue"});
-        const bool is_size = is_radius_name(property.name) || is_diameter_name(property.name);
-        const bool wanted = options.facts || (is_size && options.data.radius.empty()) ||
-                            std::ranges::find(asked, property.name) != asked.end();
-        if (wanted && !property.length_type && target.axis < 0) {
-            target.field = particles.fields.size();
-            particles.fields.push_back({property.name, 1, {}});
-        }
+        target.fields = std::move(fields.of_column[k]);
         layout.targets.push_back(std::move(target));
     }
     return layout;
@@ -76,11 +78,12 @@ class PointReader {
 
     void read(const Element& points, PointLayout& layout, bool summarize, Particles& particles) {
         particles.positions.reserve(points.count);
+        for (Field& field : particles.fields) field.values.resize(field.components * points.count);
         const bool colored = std::ranges::count_if(layout.targets, [](const auto& target) {
                                  return target.color >= 0;
                              }) == 3;
         for (std::uint64_t i = 0; i < points.count; ++i) {
-            std::array<double, 3> place{};
+            std::array<double, 3> position{};
             std::array<std::uint8_t, 3> color{};
             for (std::size_t k = 0; k < points.properties.size(); ++k) {
                 const Property& property = points.properties[k];
@@ -90,20 +93,22 @@ class PointReader {
                 }
                 const double number = value(property.type, points, i);
                 PointLayout::Target& target = layout.targets[k];
-                if (target.axis >= 0) place[static_cast<std::size_t>(target.axis)] = number;
+                if (target.axis >= 0) position[static_cast<std::size_t>(target.axis)] = number;
                 if (target.color >= 0) {
                     color[static_cast<std::size_t>(target.color)] =
                         color_byte(number, property.type);
                 }
-                if (target.field != PointLayout::kNowhere) {
-                    particles.fields[target.field].values.push_back(static_cast<float>(number));
+                for (const FieldLayout::Place place : target.fields) {
+                    Field& field = particles.fields[place.field];
+                    field.values[field.components * i + place.component] =
+                        static_cast<float>(number);
                 }
                 if (summarize && std::isfinite(number)) {
                     target.summary.least = std::min(target.summary.least, number);
                     target.summary.most = std::max(target.summary.most, number);
                 }
             }
-            const Vec3d p{place[0], place[1], place[2]};
+            const Vec3d p{position[0], position[1], position[2]};
             if (i == 0 && std::isfinite(p.x + p.y + p.z)) particles.origin = p;
             particles.positions.push_back(to_float(p - particles.origin));
             if (colored) particles.colors.push_back({color[0], color[1], color[2]});

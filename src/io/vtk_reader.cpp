@@ -52,6 +52,14 @@ VtkArray describe(const pugi::xml_node& node) {
     return array;
 }
 
+/// OVITO writes the scalar part of quaternions last.
+void put_scalar_first(Field& field) {
+    if (field.components != 4 || to_lower(field.name) != "orientation") return;
+    for (auto q = field.values.begin(); q != field.values.end(); q += 4) {
+        std::rotate(q, q + 3, q + 4);
+    }
+}
+
 class VtkReader {
   public:
     VtkReader(const Path& file, const ReadOptions& options) : file_(file), options_(options) {}
@@ -137,23 +145,13 @@ class VtkReader {
         }
     }
 
-    bool is_wanted(const std::string& name) const {
-        if (options_.facts) return true;
-        if (options_.data.radius.empty() && (is_radius_name(name) || is_diameter_name(name))) {
-            return true;
-        }
-        return std::ranges::any_of(requested_fields(options_.data), [&](const std::string& asked) {
-            return asked == name || asked.starts_with(name + ".");
-        });
-    }
-
     void add_array(const VtkArray& array, std::size_t points) {
         constexpr std::size_t kMostComponents = 1000;
         if (array.components > kMostComponents) {
             throw InputError(file_, fmt::format("array '{}' has {} components; repair the file",
                                                 array.name, array.components));
         }
-        const bool wanted = is_wanted(array.name);
+        const bool wanted = options_.facts || is_drawn_field(array.name, options_.data);
         if (!wanted && !options_.summarize) {
             note({array.name, array.components, 0, 0});
             return;
@@ -162,6 +160,7 @@ class VtkReader {
                     read_vtk_array(array, encoding_, points * array.components, file_)};
         note(summarize(field));
         if (!wanted) return;
+        put_scalar_first(field);
         for (Field& known : particles_.fields) {
             if (known.name != field.name || known.components != field.components) continue;
             known.values.resize(points_before_ * known.components);

@@ -28,6 +28,9 @@ constexpr std::array<Word<Representation>, 3> kRepresentations{
 constexpr std::array<Word<RadiiTable>, 3> kRadii{
     {{"vdw", RadiiTable::vdw}, {"bondi", RadiiTable::bondi}, {"covalent", RadiiTable::covalent}}};
 
+constexpr std::array<Word<Glyph>, 3> kGlyphs{
+    {{"sphere", Glyph::sphere}, {"box", Glyph::box}, {"ellipsoid", Glyph::ellipsoid}}};
+
 template <class T, std::size_t N>
 T read_word(const std::array<Word<T>, N>& words, std::string_view text) {
     std::vector<std::string_view> known;
@@ -204,6 +207,16 @@ std::vector<Setting> data_settings_rows() {
          [](const S& s) {
              return s.data.stick_radius ? fmt::format("{}", *s.data.stick_radius) : std::string();
          }},
+        {"glyph", "Input", "SHAPE",
+         "What particles are drawn as: sphere, box or ellipsoid, the latter under their "
+         "deformation "
+         "gradients (F11 to F33), or turned by quaternions",
+         [](S& s, Text t) { s.data.glyph = read_word(kGlyphs, t); },
+         [](const S& s) { return print_word(kGlyphs, s.data.glyph); }},
+        {"glyph-field", "Input", "FIELD",
+         "Tensor or quaternion of boxes and ellipsoids, where its name does not tell",
+         [](S& s, Text t) { s.data.glyph_field = t; },
+         [](const S& s) { return s.data.glyph_field; }},
         {"color-by", "Input", "WHAT",
          "element, chain, chain-hetero (carbons by chain, others by element), residue, entity, "
          "rainbow (along each chain), none, a colour, or a field such as bfactor or velocity.x",
@@ -211,7 +224,9 @@ std::vector<Setting> data_settings_rows() {
          false,
          any_text({"element", "chain", "chain-hetero", "residue", "entity", "rainbow", "none"})},
         {"colormap", "Input", "MAP",
-         "Colours of a field: viridis, cividis, magma, inferno, plasma, coolwarm or gray",
+         "Colours of a field: viridis, cividis, magma, inferno, plasma, coolwarm, gray; or "
+         "categories, "
+         "a colour for each whole number",
          [](S& s, Text t) { s.data.color_map = read_color_map(t); },
          [](const S& s) { return std::string(s.data.color_map->name); }, false, color_map_names()},
         {"color-range", "Input", "LOW:HIGH",

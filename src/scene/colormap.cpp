@@ -13,7 +13,7 @@ namespace {
 
 // 52 colours each: every fifth of matplotlib's 256, so that the last is its last. Between them it
 // is linear, which is at most two steps of 8 bits from matplotlib's own (cividis: five, in blue).
-constexpr std::array<ColorMap, 7> kMaps{{
+constexpr std::array<ColorMap, 8> kMaps{{
     {"viridis",
      "44015446085c471063481769481d6f482475472a7a46307e453781433d844142873f48893d4e8a3a538b"
      "38598c355e8d33638d31688e2e6d8e2c718e2a768e297b8e27808e25848e23898e218e8d20928c1f978b"
@@ -49,6 +49,7 @@ constexpr std::array<ColorMap, 7> kMaps{{
      "4646464b4b4b5050505555555a5a5a5f5f5f6464646969696e6e6e7373737878787d7d7d828282878787"
      "8c8c8c9191919696969b9b9ba0a0a0a5a5a5aaaaaaafafafb4b4b4b9b9b9bebebec3c3c3c8c8c8cdcdcd"
      "d2d2d2d7d7d7dcdcdce1e1e1e6e6e6ebebebf0f0f0f5f5f5fafafaffffff"},
+    {"categories", ""},
 }};
 
 constexpr std::size_t kDigits = 6;  // of a colour

@@ -11,14 +11,18 @@ namespace ink {
 /// A scale of colours from a field's least value (0) to its greatest (1).
 struct ColorMap {
     std::string_view name;    ///< "viridis"
-    std::string_view colors;  ///< "rrggbb" at evenly spaced values, sRGB
+    std::string_view colors;  ///< "rrggbb" at evenly spaced values, sRGB; none: of categories
 
-    /// The colour at `x`, which is clamped to [0, 1]; NaN is pink, as an unknown element is.
+    /// Gives whole numbers colours that are easy to tell apart (`category_color`).
+    bool is_categorical() const { return colors.empty(); }
+
+    /// The colour at `x`, which is clamped to [0, 1]; NaN is pink, as an unknown element is. Not of
+    /// a map of categories.
     Rgb8 at(double x) const;
 };
 
 /// All maps: viridis (the default), cividis, magma, inferno and plasma (perceptually uniform, from
-/// matplotlib, CC0), coolwarm (diverging, Moreland 2009) and gray.
+/// matplotlib, CC0), coolwarm (diverging, Moreland 2009), gray, and categories.
 std::span<const ColorMap> color_maps();
 
 /// The map of that name; null where there is none.

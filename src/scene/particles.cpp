@@ -3,17 +3,16 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <iterator>
-#include <limits>
 #include <map>
+#include <type_traits>
 #include <utility>
 
-#include "base/bounds.h"
 #include "base/error.h"
 #include "base/parallel.h"
 #include "base/text.h"
+#include "scene/color_scale.h"
+#include "scene/particle_glyphs.h"
 #include "scene/representation.h"
 
 namespace ink {
@@ -21,7 +20,6 @@ namespace ink {
 namespace {
 
 constexpr std::size_t kGrain = 16384;
-constexpr float kNone = std::numeric_limits<float>::infinity();
 
 bool is_one_of(std::string_view name, std::initializer_list<std::string_view> names) {
     return std::ranges::find(names, to_lower(name)) != names.end();
@@ -53,135 +51,6 @@ std::vector<std::string> requested_fields(const DataSettings& settings) {
     add(settings.parts);
     add(settings.glyph_field);
     return names;
-}
-
-namespace {
-
-/// Points sorted into the cells of a grid that has about as many cells as there are points.
-class PointGrid {
-  public:
-    explicit PointGrid(const std::vector<Vec3f>& points) : points_(points) {
-        Bounds3f box;
-        for (const Vec3f& p : points) box.add(p);
-        lower_ = box.lower;
-        choose_cells(box.extent());
-        begin_.assign(cells_[0] * cells_[1] * cells_[2] + 1, 0);
-        for (const Vec3f& p : points) ++begin_[cell(p) + 1];
-        for (std::size_t c = 1; c < begin_.size(); ++c) begin_[c] += begin_[c - 1];
-        order_.resize(points.size());
-        std::vector<std::uint32_t> next(begin_.begin(), begin_.end() - 1);
-        for (std::size_t i = 0; i < points.size(); ++i) {
-            order_[next[cell(points[i])]++] = static_cast<std::uint32_t>(i);
-        }
-    }
-
-    /// Distance to the nearest point that is elsewhere, among the cell of `p` and those about it;
-    /// infinity where there is none.
-    float nearest(Vec3f p) const {
-        // More neighbours than any packing has: points lie on one another.
-        constexpr std::size_t kMostCandidates = 4096;
-        std::size_t looked_at = 0;
-        float best = kNone;
-        const std::array<std::size_t, 3> home = place(p);
-        const auto range = [&](int axis) {
-            const std::size_t at = home[static_cast<std::size_t>(axis)];
-            const std::size_t last = cells_[static_cast<std::size_t>(axis)] - 1;
-            return std::pair{at == 0 ? 0 : at - 1, std::min(at + 1, last)};
-        };
-        for (std::size_t z = range(2).first; z <= range(2).second; ++z) {
-            for (std::size_t y = range(1).first; y <= range(1).second; ++y) {
-                for (std::size_t x = range(0).first; x <= range(0).second; ++x) {
-                    const std::size_t c = (z * cells_[1] + y) * cells_[0] + x;
-                    for (std::uint32_t k = begin_[c]; k < begin_[c + 1]; ++k) {
-                        if (++looked_at > kMostCandidates) return best;
-                        const float distance = length(points_[order_[k]] - p);
-                        if (distance > 0.0F) best = std::min(best, distance);
-                    }
-                }
-            }
-        }
-        return best;
-    }
-
-  private:
-    void choose_cells(Vec3f extent) {
-        const std::array<float, 3> sides{extent.x, extent.y, extent.z};
-        const float longest = *std::ranges::max_element(sides);
-        // A plane of particles has cells in two directions only.
-        constexpr float kFlat = 1e-4F;
-        double volume = 1.0;
-        int dimensions = 0;
-        for (const float side : sides) {
-            if (!(side > kFlat * longest)) continue;
-            volume *= side;
-            ++dimensions;
-        }
-        const double count = static_cast<double>(points_.size());
-        const double size = dimensions == 0 ? 1.0 : std::pow(volume / count, 1.0 / dimensions);
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-            const bool flat = !(sides[axis] > kFlat * longest);
-            const double cells = flat || !(size > 0.0) ? 1.0 : std::floor(sides[axis] / size);
-            cells_[axis] = static_cast<std::size_t>(std::clamp(cells, 1.0, count));
-            scale_[axis] = flat ? 0.0 : static_cast<double>(cells_[axis]) / double{sides[axis]};
-        }
-    }
-    std::array<std::size_t, 3> place(Vec3f p) const {
-        const Vec3f d = p - lower_;
-        const std::array<float, 3> offset{d.x, d.y, d.z};
-        std::array<std::size_t, 3> at{};
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-            const double along = std::max(offset[axis] * scale_[axis], 0.0);
-            at[axis] = std::min(static_cast<std::size_t>(along), cells_[axis] - 1);
-        }
-        return at;
-    }
-    std::size_t cell(Vec3f p) const {
-        const std::array<std::size_t, 3> at = place(p);
-        return (at[2] * cells_[1] + at[1]) * cells_[0] + at[0];
-    }
-
-    const std::vector<Vec3f>& points_;
-    Vec3f lower_;
-    std::array<std::size_t, 3> cells_{1, 1, 1};
-    std::array<double, 3> scale_{};  ///< cells per length
-    std::vector<std::uint32_t> begin_, order_;
-};
-
-}  // namespace
-
-namespace {
-
-bool is_placed(Vec3f p) {
-    constexpr float kLargest = 1e15F;
-    return std::abs(p.x) <= kLargest && std::abs(p.y) <= kLargest && std::abs(p.z) <= kLargest;
-}
-
-}  // namespace
-
-double touching_radius(const std::vector<Vec3f>& positions) {
-    if (!std::ranges::all_of(positions, is_placed)) {
-        std::vector<Vec3f> placed;
-        std::ranges::copy_if(positions, std::back_inserter(placed), is_placed);
-        return touching_radius(placed);
-    }
-    if (positions.size() < 2) return 0.5;
-    const PointGrid grid(positions);
-    constexpr std::size_t kSample = 2000;
-    const std::size_t step = std::max<std::size_t>(positions.size() / kSample, 1);
-    std::vector<float> distances;
-    for (std::size_t i = 0; i < positions.size(); i += step) {
-        const float distance = grid.nearest(positions[i]);
-        if (distance < kNone) distances.push_back(distance);
-    }
-    if (distances.empty()) {
-        Bounds3f box;
-        for (const Vec3f& p : positions) box.add(p);
-        const float diagonal = length(box.extent());
-        return diagonal > 0.0F ? diagonal / 100.0 : 0.5;
-    }
-    const auto middle = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2);
-    std::ranges::nth_element(distances, middle);
-    return *middle / 2.0;
 }
 
 namespace {
@@ -223,24 +92,42 @@ Radii particle_radii(const Particles& particles, const DataSettings& settings,
     return {{}, static_cast<float>(radius)};
 }
 
-/// Particles of whole numbers of a field are one part.
-void set_parts(const std::vector<float>& values, Spheres& shape, Object& object) {
+/// Particles of one value of a field are one part.
+std::vector<std::uint32_t> parts_by_value(const std::vector<float>& values,
+                                          std::vector<std::string>& names) {
     std::map<float, std::uint32_t> part_of;
     for (const float value : values) part_of.try_emplace(value, 0);
     std::uint32_t next = 0;
     for (auto& [value, part] : part_of) {
         part = next++;
-        object.part_names.push_back(fmt::format("{}", value));
+        names.push_back(fmt::format("{}", value));
     }
-    shape.parts.reserve(values.size());
-    for (const float value : values) shape.parts.push_back(part_of.at(value));
+    std::vector<std::uint32_t> parts;
+    parts.reserve(values.size());
+    for (const float value : values) parts.push_back(part_of.at(value));
+    return parts;
+}
+
+/// Nothing larger is drawn: it is damage, not data.
+constexpr float kLargest = 1e15F;
+
+bool is_drawable(const Sphere& sphere) { return sphere.radius > 0.0F && sphere.radius <= kLargest; }
+
+bool is_drawable(const Placement& place) {
+    for (const Vec3f axis : {place.x_axis, place.y_axis, place.z_axis}) {
+        if (!(length(to_double(axis)) <= kLargest)) return false;
+    }
+    const double volume =
+        dot(to_double(place.x_axis), cross(to_double(place.y_axis), to_double(place.z_axis)));
+    return volume != 0.0;
 }
 
 /// Which particles can be drawn: a place and a size, inside the box.
-std::vector<std::uint8_t> drawable(const Particles& particles, const Radii& radii,
+template <class Primitive>
+std::vector<std::uint8_t> drawable(const Particles& particles,
+                                   const std::vector<Primitive>& primitives,
                                    const DataSettings& settings,
                                    std::vector<std::string>& warnings) {
-    constexpr float kLargest = 1e15F;
     std::vector<std::uint8_t> keep(particles.count());
     std::uint64_t bad = 0;
     std::uint64_t outside = 0;
@@ -248,7 +135,7 @@ std::vector<std::uint8_t> drawable(const Particles& particles, const Radii& radi
         const Vec3f p = particles.positions[i];
         const bool placed =
             std::abs(p.x) <= kLargest && std::abs(p.y) <= kLargest && std::abs(p.z) <= kLargest;
-        const bool sized = radii.at(i) > 0.0F && radii.at(i) <= kLargest;
+        const bool sized = is_drawable(primitives[i]);
         const bool inside =
             settings.clip.everything() || settings.clip.holds(particles.origin + to_double(p));
         keep[i] = placed && sized && inside ? 1 : 0;
@@ -256,9 +143,9 @@ std::vector<std::uint8_t> drawable(const Particles& particles, const Radii& radi
         if (placed && sized && !inside) ++outside;
     }
     if (bad > 0) {
-        warnings.push_back(fmt::format(
-            "{} of {} particles have no finite place or positive radius and were left out.", bad,
-            keep.size()));
+        warnings.push_back(
+            fmt::format("{} of {} particles have no finite place or positive {} and were left out.",
+                        bad, keep.size(), std::is_same_v<Primitive, Sphere> ? "radius" : "volume"));
     }
     if (bad + outside == keep.size()) {
         throw Error(outside > 0 ? "--clip: no particle is inside the box"
@@ -286,7 +173,57 @@ std::vector<Rgb8> particle_colors(Particles& particles, const DataSettings& sett
         object.material.color = *color;
         return {};
     }
-    return field_colors(field_values(particles, "color-by", settings.color_by), settings);
+    Coloring coloring = color_field(
+        settings.color_by, field_values(particles, "color-by", settings.color_by), settings);
+    object.color_scale = std::move(coloring.scale);
+    return std::move(coloring.colors);
+}
+
+Spheres make_spheres(const Particles& particles, const Radii& radii) {
+    Spheres shape;
+    shape.spheres.resize(particles.count());
+    parallel_ranges(particles.count(), kGrain, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            shape.spheres[i] = {particles.positions[i], radii.at(i)};
+        }
+    });
+    return shape;
+}
+
+Glyphs make_glyphs(const Particles& particles, const GlyphAxes& axes, const Radii& radii,
+                   const DataSettings& settings) {
+    Glyphs shape;
+    shape.shape.kind = settings.glyph == Glyph::box ? GlyphKind::box : GlyphKind::ellipsoid;
+    shape.placements.resize(particles.count());
+    parallel_ranges(particles.count(), kGrain, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            shape.placements[i] = axes.placement(i, radii.at(i));
+            shape.placements[i].origin = particles.positions[i];
+        }
+    });
+    return shape;
+}
+
+/// The primitives that can be drawn, in their colours and parts. Returns which particles they are,
+/// or nothing where they are all.
+template <class S, class Primitive>
+std::vector<std::uint32_t> finish(const Particles& particles, S shape,
+                                  std::vector<Primitive> S::*primitives,
+                                  const DataSettings& settings, Object& object,
+                                  std::vector<std::string>& warnings) {
+    const std::vector<std::uint8_t> keep =
+        drawable(particles, shape.*primitives, settings, warnings);
+    std::vector<std::uint32_t> rows;
+    if (std::ranges::find(keep, 0) != keep.end()) {
+        keep_only(keep, shape.*primitives);
+        keep_only(keep, shape.colors);
+        keep_only(keep, shape.parts);
+        for (std::uint32_t i = 0; i < keep.size(); ++i) {
+            if (keep[i] != 0) rows.push_back(i);
+        }
+    }
+    object.shape = std::move(shape);
+    return rows;
 }
 
 }  // namespace
@@ -297,31 +234,31 @@ std::vector<Object> represent(Particles particles, const DataSettings& settings,
     object.name = particles.name;
     object.kind = ObjectKind::particles;
     object.frame.origin = particles.origin;
-    Spheres shape;
-    shape.colors = particle_colors(particles, settings, object);
+    std::vector<Rgb8> colors = particle_colors(particles, settings, object);
+    std::vector<std::uint32_t> parts;
     if (!settings.parts.empty()) {
-        set_parts(field_values(particles, "ids", settings.parts), shape, object);
+        parts = parts_by_value(field_values(particles, "ids", settings.parts), object.part_names);
     }
-    const Radii radii = particle_radii(particles, settings, warnings);
-    std::vector<Field> fields = std::exchange(particles.fields, {});
-    if (!facts) fields = {};
-    const std::vector<std::uint8_t> keep = drawable(particles, radii, settings, warnings);
+    std::vector<Field> fields;
     std::vector<std::uint32_t> rows;
-    shape.spheres.resize(particles.count());
-    parallel_ranges(particles.count(), kGrain, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) {
-            shape.spheres[i] = {particles.positions[i], radii.at(i)};
-        }
-    });
-    if (std::ranges::find(keep, 0) != keep.end()) {
-        keep_only(keep, shape.spheres);
-        keep_only(keep, shape.colors);
-        keep_only(keep, shape.parts);
-        for (std::uint32_t i = 0; facts && i < keep.size(); ++i) {
-            if (keep[i] != 0) rows.push_back(i);
-        }
+    const auto complete = [&](auto& shape) {
+        fields = std::exchange(particles.fields, {});
+        if (!facts) fields = {};
+        shape.colors = std::move(colors);
+        shape.parts = std::move(parts);
+    };
+    if (settings.glyph == Glyph::sphere) {
+        Spheres shape = make_spheres(particles, particle_radii(particles, settings, warnings));
+        complete(shape);
+        rows = finish(particles, std::move(shape), &Spheres::spheres, settings, object, warnings);
+    } else {
+        const GlyphAxes axes(particles.fields, settings, warnings);
+        const Radii radii =
+            axes.have_sizes() ? Radii() : particle_radii(particles, settings, warnings);
+        Glyphs shape = make_glyphs(particles, axes, radii, settings);
+        complete(shape);
+        rows = finish(particles, std::move(shape), &Glyphs::placements, settings, object, warnings);
     }
-    object.shape = std::move(shape);
     if (facts) object.facts = field_facts(std::move(fields), std::move(rows));
     std::vector<Object> objects;
     objects.push_back(std::move(object));

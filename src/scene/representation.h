@@ -1,6 +1,7 @@
 #pragma once
 
-#include <span>
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "scene/data_settings.h"
@@ -14,9 +15,6 @@ namespace ink {
 /// Parts are chains unless `parts` says otherwise; colours are the elements' unless `color_by`
 /// does. Throws Error where the settings name what the molecule does not have.
 std::vector<Object> represent(const Molecule& molecule, const DataSettings& settings);
-
-/// A colour an entry: from the least to the greatest finite value, or over the range that is set.
-std::vector<Rgb8> field_colors(std::span<const float> values, const DataSettings& settings);
 
 /// The number that the text of `--radius` is, if it is one. Throws UsageError unless it is positive
 /// and finite.

@@ -8,6 +8,7 @@
 
 #include "base/bounds.h"
 #include "base/vec.h"
+#include "scene/color_scale.h"
 #include "scene/facts.h"
 #include "scene/glyphs.h"
 #include "scene/ids.h"
@@ -54,6 +55,7 @@ struct Object {
     std::optional<NormalSource> normals{};
     /// What the file says about a primitive; empty unless the reader was asked to keep it.
     FactSource facts{};
+    std::optional<ColorScale> color_scale{};  ///< what its colours mean, where they mean something
 
     std::size_t primitive_count() const { return ink::primitive_count(shape); }
     Bounds3d world_bounds() const;
