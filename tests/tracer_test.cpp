@@ -86,6 +86,40 @@ TEST_P(EveryTracerPath, HitsWhatBruteForceHits) {
     EXPECT_LT(result.normal_error, 2e-2F);  // at a limb the normal turns by sqrt(2 eps)
 }
 
+TEST_P(EveryTracerPath, IsBlockedWhereBruteForceIs) {
+    std::vector<Object> objects = random_objects(7, 300, 400);
+    Object glyphs;
+    glyphs.name = "boxes";
+    Glyphs boxes{.shape = {.kind = GlyphKind::box}, .placements = {}, .colors = {}, .parts = {}};
+    for (int i = 0; i < 2; ++i) {
+        Placement box{{0.1F, 0, 0}, {0, 0.2F, 0}, {0, 0, 0.1F}, {}};
+        box.origin = {0.1F + 0.2F * static_cast<float>(i), 0.1F, 0.1F};
+        boxes.placements.push_back(box);
+    }
+    glyphs.shape = std::move(boxes);
+    objects.push_back(std::move(glyphs));
+    const Scene scene(std::move(objects));
+    auto rays = random_rays(11, 40);
+    rays[0].active[3] = 0;
+    std::vector<Lanes<float>> reach(rays.size(), Lanes<float>::filled(0.7F));
+    reach[1].fill(kInfinity);
+    std::vector<Lanes<std::int32_t>> blocked(rays.size());
+    std::vector<Lanes<std::int32_t>> expected(rays.size());
+    make_embree_tracer(scene, GetParam())->occluded(rays, reach, blocked);
+    make_brute_force_tracer(scene)->occluded(rays, reach, expected);
+    EXPECT_EQ(blocked[0][3], 0);
+    int hits = 0;
+    int different = 0;
+    for (std::size_t k = 0; k < rays.size(); ++k) {
+        for (int i = 0; i < kLanes; ++i) {
+            hits += expected[k][i] != 0 ? 1 : 0;
+            different += blocked[k][i] != expected[k][i] ? 1 : 0;
+        }
+    }
+    EXPECT_GT(hits, 60);
+    EXPECT_LE(different, 3);
+}
+
 TEST_P(EveryTracerPath, LeavesInactiveRaysAlone) {
     const Scene scene(random_objects(7, 300, 400));
     auto rays = random_rays(12, 20);

@@ -193,6 +193,17 @@ class BruteForceTracer final : public Tracer {
         }
     }
 
+    void occluded(std::span<const RayPacket> rays, std::span<const Lanes<float>> reach,
+                  std::span<Lanes<std::int32_t>> blocked) const override {
+        for (std::size_t k = 0; k < rays.size(); ++k) {
+            for (int lane = 0; lane < kLanes; ++lane) {
+                const bool hit = rays[k].active[lane] != 0 &&
+                                 trace(rays[k], lane).t < static_cast<double>(reach[k][lane]);
+                blocked[k][lane] = hit ? -1 : 0;
+            }
+        }
+    }
+
   private:
     Hit trace(const RayPacket& rays, int lane) const {
         const Ray ray{{rays.origin_x[lane], rays.origin_y[lane], rays.origin_z[lane]},

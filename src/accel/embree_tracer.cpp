@@ -157,12 +157,29 @@ struct UserShape {
         }
     }
 
+    static void occluded(const RTCOccludedFunctionNArguments* args) {
+        const auto& shape = *static_cast<const Shape*>(args->geometryUserPtr);
+        const Meet meet(shape, args->primID);
+        const unsigned width = args->N;
+        for (unsigned i = 0; i < width; ++i) {
+            if (args->valid[i] == 0) continue;
+            const ShapeRay ray{
+                {RTCRayN_org_x(args->ray, width, i), RTCRayN_org_y(args->ray, width, i),
+                 RTCRayN_org_z(args->ray, width, i)},
+                {RTCRayN_dir_x(args->ray, width, i), RTCRayN_dir_y(args->ray, width, i),
+                 RTCRayN_dir_z(args->ray, width, i)}};
+            float& far = RTCRayN_tfar(args->ray, width, i);
+            if (meet(ray, RTCRayN_tnear(args->ray, width, i), far)) far = -kInfinity;
+        }
+    }
+
     static GeometryHandle make(RTCDevice device, const Shape& shape, std::size_t count) {
         GeometryHandle geometry(rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER));
         rtcSetGeometryUserPrimitiveCount(geometry.get(), static_cast<unsigned>(count));
         rtcSetGeometryUserData(geometry.get(), const_cast<Shape*>(&shape));
         rtcSetGeometryBoundsFunction(geometry.get(), bounds, nullptr);
         rtcSetGeometryIntersectFunction(geometry.get(), intersect);
+        rtcSetGeometryOccludedFunction(geometry.get(), occluded);
         return geometry;
     }
 };
@@ -212,29 +229,40 @@ PacketWidth widest_native(RTCDevice device) {
 }
 
 /// Sets what is alike for all rays and left alone by Embree.
-template <class RayHit, int Width>
-void prepare(RayHit& packet) {
+template <int Width, class Rays>
+void prepare_rays(Rays& rays) {
     for (int i = 0; i < Width; ++i) {
-        packet.ray.tnear[i] = 0.0F;
-        packet.ray.time[i] = 0.0F;
-        packet.ray.mask[i] = ~0U;
-        packet.ray.flags[i] = 0;
-        packet.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
+        rays.tnear[i] = 0.0F;
+        rays.time[i] = 0.0F;
+        rays.mask[i] = ~0U;
+        rays.flags[i] = 0;
     }
 }
 
-/// Copies lanes [first, first + Width) of a packet into Embree's layout of that width.
 template <class RayHit, int Width>
-void load(const RayPacket& rays, int first, RayHit& out) {
+void prepare(RayHit& packet) {
+    prepare_rays<Width>(packet.ray);
+    for (int i = 0; i < Width; ++i) packet.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
+}
+
+/// Copies lanes [first, first + Width) of a packet into Embree's layout of that width.
+template <int Width, class Rays>
+void load_rays(const RayPacket& rays, int first, Rays& out) {
     const auto copy = [&](auto* to, const auto& from) {
         std::memcpy(to, from.data() + first, sizeof(*to) * Width);
     };
-    copy(out.ray.org_x, rays.origin_x);
-    copy(out.ray.org_y, rays.origin_y);
-    copy(out.ray.org_z, rays.origin_z);
-    copy(out.ray.dir_x, rays.dir_x);
-    copy(out.ray.dir_y, rays.dir_y);
-    copy(out.ray.dir_z, rays.dir_z);
+    copy(out.org_x, rays.origin_x);
+    copy(out.org_y, rays.origin_y);
+    copy(out.org_z, rays.origin_z);
+    copy(out.dir_x, rays.dir_x);
+    copy(out.dir_y, rays.dir_y);
+    copy(out.dir_z, rays.dir_z);
+}
+
+/// The same, ready to look for the nearest hit at any distance.
+template <class RayHit, int Width>
+void load(const RayPacket& rays, int first, RayHit& out) {
+    load_rays<Width>(rays, first, out.ray);
     for (int i = 0; i < Width; ++i) {
         out.ray.tfar[i] = kInfinity;
         out.ray.id[i] = static_cast<unsigned>(first + i);
@@ -283,6 +311,22 @@ class EmbreeTracer final : public Tracer {
         for (auto& list : hits) list.clear();
         HitPacket nearest;  // of which there is none: all are passed over
         intersect({&rays, 1}, {&nearest, 1}, Coherence::coherent, &hits);
+    }
+
+    void occluded(std::span<const RayPacket> rays, std::span<const Lanes<float>> reach,
+                  std::span<Lanes<std::int32_t>> blocked) const override {
+        switch (width_) {
+            case PacketWidth::sixteen:
+                return block<RTCRay16, 16>(rays, reach, blocked,
+                                           [](auto&&... a) { rtcOccluded16(a...); });
+            case PacketWidth::eight:
+                return block<RTCRay8, 8>(rays, reach, blocked,
+                                         [](auto&&... a) { rtcOccluded8(a...); });
+            default:
+                // Four lanes are native wherever Embree runs.
+                return block<RTCRay4, 4>(rays, reach, blocked,
+                                         [](auto&&... a) { rtcOccluded4(a...); });
+        }
     }
 
   private:
@@ -335,6 +379,40 @@ class EmbreeTracer final : public Tracer {
         return query;
     }
 #endif
+
+#if RTC_VERSION_MAJOR >= 4
+    static RTCOccludedArguments any_hit_arguments() {
+        RTCOccludedArguments args;
+        rtcInitOccludedArguments(&args);
+        return args;
+    }
+#else
+    static RTCIntersectContext any_hit_arguments() { return arguments(Coherence::incoherent); }
+#endif
+
+    template <class Rays, int Width, class Kernel>
+    void block(std::span<const RayPacket> rays, std::span<const Lanes<float>> reach,
+               std::span<Lanes<std::int32_t>> blocked, const Kernel& kernel) const {
+        auto args = any_hit_arguments();
+        alignas(64) Rays packet{};
+        prepare_rays<Width>(packet);
+        for (std::size_t k = 0; k < rays.size(); ++k) {
+            for (int first = 0; first < kLanes; first += Width) {
+                load_rays<Width>(rays[k], first, packet);
+                std::memcpy(packet.tfar, reach[k].data() + first, sizeof(float) * Width);
+                const std::int32_t* active = rays[k].active.data() + first;
+#if RTC_VERSION_MAJOR >= 4
+                kernel(active, scene_.get(), &packet, &args);
+#else
+                kernel(active, scene_.get(), &args, &packet);
+#endif
+                // Embree marks what is blocked by a distance below zero.
+                for (int i = 0; i < Width; ++i) {
+                    blocked[k][first + i] = active[i] != 0 && packet.tfar[i] < 0.0F ? -1 : 0;
+                }
+            }
+        }
+    }
 
     template <class RayHit, int Width, class Kernel>
     void trace(std::span<const RayPacket> rays, std::span<HitPacket> hits, Coherence coherence,

@@ -134,6 +134,11 @@ class SceneTracer final : public Tracer {
         all_.get().cross(rays, hits);
     }
 
+    void occluded(std::span<const RayPacket> rays, std::span<const Lanes<float>> reach,
+                  std::span<Lanes<std::int32_t>> blocked) const override {
+        all_.get().occluded(rays, reach, blocked);
+    }
+
     std::unique_ptr<FrameTracer> frame(const Projection& projection, int threads) const override {
         const auto objects = std::span(scene_.objects());
         if (!projection.sees_all() || std::ranges::none_of(objects, has_screen_form)) {

@@ -109,6 +109,12 @@ class Tracer {
     /// going on from behind each hit, which loses surfaces that touch.
     virtual void cross(const RayPacket& rays, SurfaceHits& hits) const;
 
+    /// Whether anything lies on `rays[k]` nearer than `reach[k]` (scene units, may be infinite):
+    /// `blocked[k]` is -1 where it does, else 0. Inactive rays are not blocked. The spans have
+    /// equal length.
+    virtual void occluded(std::span<const RayPacket> rays, std::span<const Lanes<float>> reach,
+                          std::span<Lanes<std::int32_t>> blocked) const = 0;
+
     /// Prepares a picture on up to `threads` threads. The frame must not outlive the tracer. What
     /// tells it from `intersect` is speed alone.
     virtual std::unique_ptr<FrameTracer> frame(const Projection& projection, int threads) const;

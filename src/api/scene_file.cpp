@@ -115,8 +115,18 @@ class SceneReader {
         const auto materials = root_.find("materials");
         const auto found = materials ? materials->find(name) : std::nullopt;
         if (!found) node.fail(fmt::format("there is no material '{}' under \"materials\"", name));
-        found->allow_only({"color"});
-        return {.color = read_color(found->at("color"))};
+        found->allow_only({"color", "specular", "roughness", "metal"});
+        Material material;
+        if (const auto color = found->find("color")) material.color = read_color(*color);
+        const auto read = [&](const char* key, double least, float& value) {
+            if (const auto given = found->find(key)) {
+                value = static_cast<float>(given->number(least, 1.0));
+            }
+        };
+        read("specular", 0.0, material.specular);
+        read("roughness", kLeastRoughness, material.roughness);
+        read("metal", 0.0, material.metal);
+        return material;
     }
 
     /// Another file, by settings of topic Input of its own.

@@ -122,7 +122,9 @@ void LineFinder::shade(const Tile& tile) {
     colors_.resize(blocks_.size());
     seen_.resize(blocks_.size());
     for (std::size_t k = 0; k < blocks_.size(); ++k) {
-        seen_[k] = pipeline.shader.shade(hits_[k], normals_[k], colors_[k]) ? 1 : 0;
+        const SurfacePacket surface{sampler_.packets()[k], sampler_.points()[k], hits_[k],
+                                    normals_[k]};
+        seen_[k] = pipeline.shader.shade(surface, colors_[k]) ? 1 : 0;
     }
     const Size size = pipeline.film.size();
     for (int y = std::max(tile.y0, 0); y < std::min(tile.y1, size.height); y += kBlockSide) {

@@ -47,19 +47,9 @@ LineRule read_rule(std::string_view text) {
     }
     LineRule rule;
     read_target(text.substr(0, colon), rule);
-    // A colour may have commas of its own: what has no '=' goes on with the value before it.
-    std::vector<std::pair<std::string_view, std::string>> properties;
-    for (const std::string_view part : split(text.substr(colon + 1), ',')) {
-        const std::size_t equals = part.find('=');
-        if (equals != std::string_view::npos) {
-            properties.emplace_back(trim(part.substr(0, equals)), part.substr(equals + 1));
-        } else if (!properties.empty()) {
-            properties.back().second += fmt::format(",{}", part);
-        } else {
-            throw UsageError(fmt::format("'{}' is not of the form key=value", part));
-        }
+    for (const Property& property : read_properties(text.substr(colon + 1))) {
+        read_property(property.key, property.value, rule);
     }
-    for (const auto& [key, value] : properties) read_property(key, value, rule);
     return rule;
 }
 

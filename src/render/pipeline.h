@@ -33,7 +33,7 @@ struct Pipeline {
           settings(all),
           camera(scene, all.view, all.size),
           frame(scene_tracer.frame(camera.projection(), all.threads)),
-          shader(scene, camera, all.shading),
+          shader(scene, scene_tracer, camera, all.shading),
           ids(scene, all.ids),
           unit(static_cast<float>(scene.frame().unit)),
           film(target),

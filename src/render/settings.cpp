@@ -12,6 +12,7 @@
 
 #include "base/error.h"
 #include "base/text.h"
+#include "render/material_text.h"
 #include "render/values.h"
 
 namespace ink {
@@ -38,20 +39,6 @@ Size read_size(std::string_view text) {
         return static_cast<int>(*value);
     };
     return {side(sides[0]), side(sides[1])};
-}
-
-Vec3d read_vector(std::string_view text) {
-    const auto parts = split(text, ',');
-    std::array<double, 3> v{};
-    bool good = parts.size() == 3;
-    for (std::size_t i = 0; good && i < 3; ++i) {
-        const auto value = parse_double(parts[i]);
-        good = value && std::isfinite(*value);
-        if (good) v[i] = *value;
-    }
-    if (!good)
-        throw UsageError(fmt::format("'{}' is not a vector; write X,Y,Z, as in 0,1,0", text));
-    return {v[0], v[1], v[2]};
 }
 
 /// Empty text stands for what is chosen automatically.
@@ -163,6 +150,7 @@ const Words<Compose> kComposes{
     {{"shaded", Compose::shaded}, {"lines", Compose::lines}, {"both", Compose::both}}};
 const Words<ShadeMode> kShadeModes{{{"lambert", ShadeMode::lambert},
                                     {"toon", ShadeMode::toon},
+                                    {"gooch", ShadeMode::gooch},
                                     {"flat", ShadeMode::flat},
                                     {"none", ShadeMode::none}}};
 const Words<Fill> kFills{{{"none", Fill::none}, {"flat", Fill::flat}, {"image", Fill::image}}};
@@ -445,9 +433,19 @@ std::vector<Setting> make_table() {
          [](const S& s) { return kBlends.print(s.line_blend); }, false, one_of(kBlends)},
 
         {"shade", "Shading", "MODE",
-         "lambert (diffuse), toon (in steps), flat (colours only) or none",
+         "lambert (diffuse), toon (in steps), gooch (cool to warm), flat (colours only) or none",
          [](S& s, Text t) { s.shading.mode = kShadeModes.read(t); },
          [](const S& s) { return kShadeModes.print(s.shading.mode); }, false, one_of(kShadeModes)},
+        {"material", "Shading", "[OBJECT:]RULE",
+         "color=COLOR,specular=F,roughness=F,metal=F for every object, or for the one of that "
+         "number "
+         "or name; may be repeated",
+         [](S& s, Text t) {
+             auto& all = s.shading.materials;
+             if (t.empty()) return all.clear();
+             for (MaterialRule& rule : read_material_rules(t)) all.push_back(std::move(rule));
+         },
+         [](const S& s) { return print(s.shading.materials); }, true},
         {"aa", "Shading", "MODE",
          "Smoothing of what is not a line: none, edges (method edges: mix the two sides' colours "
          "in "

@@ -111,7 +111,7 @@ bool shade_block(const Stencils& stencils, const Workspace& work, std::size_t k,
     constexpr std::size_t kAhead = 4;
     const Shader& shader = stencils.pipeline.shader;
     if (k + kAhead < work.blocks.size()) shader.prefetch(work.hits[k + kAhead]);
-    return shader.shade(work.hits[k], colors);
+    return shader.shade(work.sampler.packets()[k], work.sampler.points()[k], work.hits[k], colors);
 }
 
 void shade_samples(const Stencils& stencils, Workspace& work) {
@@ -267,14 +267,14 @@ void measure_ridges(const Stencils& stencils, Workspace& work, std::size_t block
 }
 
 /// Section 4.2: the sample's colour becomes the mean over itself and its stencil.
-void average_colors(const Stencils& stencils, const std::vector<HitPacket>& stencil,
-                    ColorPacket& colors) {
+void average_colors(const Stencils& stencils, const Workspace& work, ColorPacket& colors) {
     ColorPacket one;
-    for (const HitPacket& hits : stencil) {
-        stencils.pipeline.shader.shade(hits, one);
+    for (std::size_t k = 0; k < work.stencil_hits.size(); ++k) {
+        stencils.pipeline.shader.shade(work.sampler.packets()[k], work.sampler.points()[k],
+                                       work.stencil_hits[k], one);
         add(one, colors);
     }
-    scale(colors, 1.0F / static_cast<float>(stencil.size() + 1));
+    scale(colors, 1.0F / static_cast<float>(work.stencil_hits.size() + 1));
 }
 
 void trace_stencils(const Stencils& stencils, Workspace& work, Vec2f offset) {
@@ -292,7 +292,7 @@ void trace_stencils(const Stencils& stencils, Workspace& work, Vec2f offset) {
             measure_strength(stencils, work, k, work.strengths[k]);
         }
         if (stencils.shaded) {
-            average_colors(stencils, work.stencil_hits, work.colors[k]);
+            average_colors(stencils, work, work.colors[k]);
             work.seen[k] = 1;
         }
         // Last, because it traces anew.

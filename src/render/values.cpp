@@ -84,6 +84,36 @@ Length read_length(std::string_view text, bool zero_allowed) {
     return length;
 }
 
+Vec3d read_vector(std::string_view text) {
+    const auto parts = split(text, ',');
+    std::array<double, 3> v{};
+    bool good = parts.size() == 3;
+    for (std::size_t i = 0; good && i < 3; ++i) {
+        const auto value = parse_double(parts[i]);
+        good = value && std::isfinite(*value);
+        if (good) v[i] = *value;
+    }
+    if (!good)
+        throw UsageError(fmt::format("'{}' is not a vector; write X,Y,Z, as in 0,1,0", text));
+    return {v[0], v[1], v[2]};
+}
+
+std::vector<Property> read_properties(std::string_view text) {
+    std::vector<Property> properties;
+    for (const std::string_view part : split(text, ',')) {
+        const std::size_t equals = part.find('=');
+        if (equals != std::string_view::npos) {
+            properties.push_back(
+                {trim(part.substr(0, equals)), std::string(trim(part.substr(equals + 1)))});
+        } else if (!properties.empty()) {
+            properties.back().value += fmt::format(",{}", part);
+        } else {
+            throw UsageError(fmt::format("'{}' is not of the form key=value", part));
+        }
+    }
+    return properties;
+}
+
 std::string print(const Length& length) {
     return fmt::format("{}{}", length.value, kUnitNames[static_cast<std::size_t>(length.unit)]);
 }

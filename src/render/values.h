@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/color.h"
+#include "base/vec.h"
 
 namespace ink {
 
@@ -42,6 +43,17 @@ double read_number(std::string_view text, double least, double most);
 int read_int(std::string_view text, int least, int most);
 Rgb8 read_color(std::string_view text);
 Length read_length(std::string_view text, bool zero_allowed = false);
+
+Vec3d read_vector(std::string_view text);
+
+/// "key=value".
+struct Property {
+    std::string_view key;
+    std::string value;
+};
+/// Reads "key=value,...". A value may have commas of its own: what has no '=' goes on with the
+/// value before it.
+std::vector<Property> read_properties(std::string_view text);
 
 /// In the form that read_length reads.
 std::string print(const Length& length);

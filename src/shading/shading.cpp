@@ -36,9 +36,11 @@ std::uint32_t shared_object(const HitPacket& hits) {
     return least == kNoObject || least == most ? least : kSeveralObjects;
 }
 
-Vec3f view_direction(const Camera& camera, float right, float up, float back) {
-    return normalize(camera.right() * right + camera.up() * up + camera.back() * back);
-}
+constexpr float kToonSteps = 4.0F;
+
+/// Ambient occlusion also dims the other lights, by this share: rays that graze the scene on their
+/// way to a cleft mostly do not arrive.
+constexpr float kCleftShade = 0.5F;
 
 }  // namespace
 
@@ -62,64 +64,75 @@ void scale(ColorPacket& colors, float factor) {
     }
 }
 
-Shader::Shader(const Scene& scene, const Camera& camera, const ShadingSettings& settings)
-    : mode_(settings.mode) {
-    for (const Object& object : scene.objects()) {
-        Surface surface;
-        surface.color = srgb_decode(object.material.color);
-        if (!std::holds_alternative<Mesh>(object.shape)) {
-            const auto& colors = std::visit(
-                [](const auto& s) -> auto& { return s.colors; }, object.shape);
-            if (!colors.empty()) surface.primitive_colors = colors.data();
-        } else {
-            const auto& mesh = std::get<Mesh>(object.shape);
-            surface.triangles = mesh.triangles.data();
-            if (!mesh.colors.empty()) surface.vertex_colors = mesh.colors.data();
-            if (!mesh.corner_normals.empty())
-                surface.corner_normals = mesh.corner_normals[0].data();
-            const NormalSource source = object.normals.value_or(settings.normals);
-            const bool own = source == NormalSource::automatic && !mesh.line_normals.empty();
-            surface.line_normals = own ? mesh.line_normals[0].data() : surface.corner_normals;
-            if (source == NormalSource::geometric) surface.line_normals = nullptr;
-        }
-        any_smooth_ |= surface.corner_normals != nullptr || surface.line_normals != nullptr;
-        any_line_normals_ |= surface.line_normals != surface.corner_normals;
-        surfaces_.push_back(surface);
+Shader::Shader(const Scene& scene, const Tracer& tracer, const Camera& camera,
+               const ShadingSettings& settings)
+    : mode_(settings.mode),
+      pastel_(settings.pastel),
+      lights_(settings.lights.empty() ? default_lights(camera, settings.ambient)
+                                      : make_lights(scene, camera, settings.lights)),
+      shadows_(tracer, settings.shadows),
+      depth_cue_(scene, camera),
+      fog_(settings.fog) {
+    const std::vector<ResolvedMaterial> materials = resolve_materials(scene, settings.materials);
+    for (std::size_t k = 0; k < materials.size(); ++k) {
+        add_surface(scene.objects()[k], materials[k], settings.normals);
     }
-
-    const Color color = srgb_decode(settings.background);
+    background_color_ = srgb_decode(settings.background);
+    const Color color = background_color_;
     const float alpha = settings.transparent_background ? 0.0F : 1.0F;
     background_.r.fill(color.r * alpha);
     background_.g.fill(color.g * alpha);
     background_.b.fill(color.b * alpha);
     background_.a.fill(alpha);
-
-    // Together a little below 1 where the key light falls straight on, so that no colour clips.
-    const bool lit = mode_ == ShadeMode::lambert || mode_ == ShadeMode::toon;
-    lighting_.key_dir = view_direction(camera, -0.45F, 0.65F, 0.75F);
-    lighting_.fill_dir = view_direction(camera, 0.75F, -0.1F, 0.65F);
-    lighting_.up = camera.up();
-    lighting_.key = lit ? 0.66F : 0.0F;
-    lighting_.fill = lit ? 0.16F : 0.0F;
-    lighting_.ambient_middle = lit ? 0.17F : 1.0F;
-    lighting_.ambient_slope = lit ? 0.06F : 0.0F;
-    lighting_.toon_steps = mode_ == ShadeMode::toon ? 4.0F : 0.0F;
 }
 
-bool Shader::shade(const HitPacket& hits, ColorPacket& colors) const {
+void Shader::add_surface(const Object& object, const ResolvedMaterial& material,
+                         NormalSource usual) {
+    Surface surface{.color = srgb_decode(material.color),
+                    .specular = material.specular,
+                    .roughness = material.roughness,
+                    .metal = material.metal};
+    if (!std::holds_alternative<Mesh>(object.shape)) {
+        const auto& colors = std::visit(
+            [](const auto& s) -> auto& { return s.colors; }, object.shape);
+        if (!colors.empty()) surface.primitive_colors = colors.data();
+    } else {
+        const auto& mesh = std::get<Mesh>(object.shape);
+        surface.triangles = mesh.triangles.data();
+        if (!mesh.colors.empty()) surface.vertex_colors = mesh.colors.data();
+        if (!mesh.corner_normals.empty()) surface.corner_normals = mesh.corner_normals[0].data();
+        const NormalSource source = object.normals.value_or(usual);
+        const bool own = source == NormalSource::automatic && !mesh.line_normals.empty();
+        surface.line_normals = own ? mesh.line_normals[0].data() : surface.corner_normals;
+        if (source == NormalSource::geometric) surface.line_normals = nullptr;
+    }
+    if (material.uniform) surface.primitive_colors = surface.vertex_colors = nullptr;
+    any_smooth_ |= surface.corner_normals != nullptr || surface.line_normals != nullptr;
+    any_line_normals_ |= surface.line_normals != surface.corner_normals;
+    any_gloss_ |= material.specular > 0.0F || material.metal > 0.0F;
+    surfaces_.push_back(surface);
+}
+
+bool Shader::shade(const RayPacket& rays, const PointPacket& points, const HitPacket& hits,
+                   ColorPacket& colors) const {
     NormalPacket normals;
     smooth(hits, normals);
-    return shade(hits, normals, colors);
+    return shade({rays, points, hits, normals}, colors);
 }
 
-bool Shader::shade(const HitPacket& hits, const NormalPacket& normals, ColorPacket& colors) const {
-    const std::uint32_t object = shared_object(hits);
+bool Shader::shade(const SurfacePacket& surface, ColorPacket& colors) const {
+    const std::uint32_t object = shared_object(surface.hits);
     if (object == kNoObject || mode_ == ShadeMode::none) {
         colors = background_;
         return object != kNoObject;
     }
-    look_up_colors(hits, object, colors);
-    illuminate(hits, normals, lighting_, background_, colors);
+    ColorLanes base;
+    look_up_colors(surface.hits, object, base);
+    if (pastel_ > 0.0F) mix(base, pastel_, {1, 1, 1});
+    ColorLanes lit;
+    illuminate(surface, base, lit);
+    if (fog_ > 0.0F) add_fog(surface, lit);
+    finish(surface.hits, lit, background_, colors);
     return true;
 }
 
@@ -157,13 +170,10 @@ Color Shader::surface_color(const Surface& surface, const HitPacket& hits, int l
     return {w * a.r + u * b.r + v * c.r, w * a.g + u * b.g + v * c.g, w * a.b + u * b.b + v * c.b};
 }
 
-void Shader::look_up_colors(const HitPacket& hits, std::uint32_t object,
-                            ColorPacket& colors) const {
+void Shader::look_up_colors(const HitPacket& hits, std::uint32_t object, ColorLanes& colors) const {
     if (object != kSeveralObjects && surfaces_[object].primitive_colors == nullptr &&
         surfaces_[object].vertex_colors == nullptr) {
-        colors.r.fill(surfaces_[object].color.r);
-        colors.g.fill(surfaces_[object].color.g);
-        colors.b.fill(surfaces_[object].color.b);
+        colors.fill(surfaces_[object].color);
         return;
     }
     for (int i = 0; i < kLanes; ++i) {
@@ -236,31 +246,69 @@ void Shader::interpolate_normals(const std::uint32_t* corner_normals, std::uint3
     }
 }
 
-/// Surface colour times the light that reaches it; misses take the background.
-INKTRACE_MULTIVERSION
-void Shader::illuminate(const HitPacket& hits, const NormalPacket& normals,
-                        const Lighting& lighting, const ColorPacket& background,
-                        ColorPacket& colors) {
-    Lanes<float> light;
+void Shader::look_up_gloss(const HitPacket& hits, Gloss& gloss) const {
     for (int i = 0; i < kLanes; ++i) {
-        const auto along = [&](Vec3f d) {
-            return normals.x[i] * d.x + normals.y[i] * d.y + normals.z[i] * d.z;
-        };
-        const float ambient = lighting.ambient_middle + lighting.ambient_slope * along(lighting.up);
-        const float key = lighting.key * std::max(along(lighting.key_dir), 0.0F);
-        const float fill = lighting.fill * std::max(along(lighting.fill_dir), 0.0F);
-        light[i] = ambient + key + fill;
+        const Surface surface = hits.object[i] == kNoObject ? Surface{} : surfaces_[hits.object[i]];
+        gloss.specular[i] = surface.specular;
+        gloss.roughness[i] = surface.roughness;
+        gloss.metal[i] = surface.metal;
     }
-    if (lighting.toon_steps > 0.0F) {
-        for (float& value : light) {
-            value = (std::floor(value * lighting.toon_steps) + 0.5F) / lighting.toon_steps;
+}
+
+/// Surface colour times the light that is scattered, and what is reflected.
+void Shader::illuminate(const SurfacePacket& surface, const ColorLanes& base,
+                        ColorLanes& lit) const {
+    Lanes<float> open = Lanes<float>::filled(1.0F);
+    if (ambient_ != nullptr) ambient_->openness(surface, open);
+    if (mode_ == ShadeMode::flat) return shade_flat(base, open, lit);
+    if (mode_ == ShadeMode::gooch) {
+        return shade_gooch(lights_.sources.front(), surface, base, open, lit);
+    }
+    Gloss gloss;
+    if (any_gloss_) look_up_gloss(surface.hits, gloss);
+
+    ColorLanes scattered{};
+    ColorLanes reflected{};
+    add_sky(lights_.sky, surface, open, scattered);
+    if (any_gloss_) add_surroundings(lights_.sky, surface, gloss, base, open, reflected);
+    for (const LightSource& light : lights_.sources) {
+        Lanes<float> visible = Lanes<float>::filled(1.0F);
+        if (light.shadows && shadows_.any()) {
+            shadows_.visible(light, surface, visible);
+        } else if (ambient_ != nullptr) {
+            for (int i = 0; i < kLanes; ++i) visible[i] = 1.0F - kCleftShade * (1.0F - open[i]);
         }
+        add_diffuse(light, surface, visible, scattered);
+        if (any_gloss_) add_highlight(light, surface, gloss, base, visible, reflected);
     }
+    if (mode_ == ShadeMode::toon) posterize(kToonSteps, scattered);
+    if (any_gloss_) {
+        return add_reflected(base, scattered, gloss, reflected, lit);
+    }
+    multiply(base, scattered, lit);
+}
+
+void Shader::add_fog(const SurfacePacket& surface, ColorLanes& lit) const {
+    for (int i = 0; i < kLanes; ++i) {
+        const float t = surface.hits.object[i] == kNoObject ? 0.0F : surface.hits.t[i];
+        const float share =
+            fog_ * depth_cue_({surface.rays.origin_x[i] + t * surface.rays.dir_x[i],
+                               surface.rays.origin_y[i] + t * surface.rays.dir_y[i],
+                               surface.rays.origin_z[i] + t * surface.rays.dir_z[i]});
+        lit.r[i] += share * (background_color_.r - lit.r[i]);
+        lit.g[i] += share * (background_color_.g - lit.g[i]);
+        lit.b[i] += share * (background_color_.b - lit.b[i]);
+    }
+}
+
+INKTRACE_MULTIVERSION
+void Shader::finish(const HitPacket& hits, const ColorLanes& lit, const ColorPacket& background,
+                    ColorPacket& colors) {
     for (int i = 0; i < kLanes; ++i) {
         const bool miss = hits.object[i] == kNoObject;
-        colors.r[i] = miss ? background.r[i] : colors.r[i] * light[i];
-        colors.g[i] = miss ? background.g[i] : colors.g[i] * light[i];
-        colors.b[i] = miss ? background.b[i] : colors.b[i] * light[i];
+        colors.r[i] = miss ? background.r[i] : lit.r[i];
+        colors.g[i] = miss ? background.g[i] : lit.g[i];
+        colors.b[i] = miss ? background.b[i] : lit.b[i];
         colors.a[i] = miss ? background.a[i] : 1.0F;
     }
 }

@@ -9,18 +9,32 @@
 #include "base/lanes.h"
 #include "camera/camera.h"
 #include "scene/scene.h"
+#include "shading/ambient.h"
+#include "shading/depth_cue.h"
+#include "shading/lighting.h"
+#include "shading/lights.h"
+#include "shading/material_rules.h"
+#include "shading/shadows.h"
 
 namespace ink {
 
 enum class ShadeMode : std::uint8_t {
     lambert,  ///< diffuse, two-sided (the paper's)
     toon,     ///< the same in four steps
+    gooch,    ///< from cool to warm towards the key light (Gooch et al. 1998)
     flat,     ///< surface colour without light
     none      ///< everything in the background's colour
 };
 
 struct ShadingSettings {
     ShadeMode mode = ShadeMode::lambert;
+    float ambient = 0.0F;     ///< share of light that comes from all around, occluded; [0, 1]
+    int ambient_quality = 2;  ///< of ambient occlusion, [1, 5]
+    ShadowMode shadows = ShadowMode::none;
+    std::vector<LightRule> lights;  ///< empty: default_lights
+    std::vector<MaterialRule> materials;
+    float pastel = 0.0F;  ///< share of white in every surface's colour, [0, 1]
+    float fog = 0.0F;     ///< share of the background in what is farthest, [0, 1]
     Rgb8 background{255, 255, 255};
     bool transparent_background = false;
     NormalSource normals = NormalSource::automatic;  ///< of lines, where an object has no own
@@ -31,26 +45,26 @@ struct ColorPacket {
     Lanes<float> r, g, b, a;
 };
 
-struct NormalPacket {
-    Lanes<float> x, y, z;
-};
-
 /// The mean of several packets: sum them, then scale.
 void add(const ColorPacket& colors, ColorPacket& sum);
 void scale(ColorPacket& colors, float factor);
 
-/// What each object looks like, laid out for shading. Lights follow the camera: a key light from
-/// the upper left, a weaker fill light from the right, and light from all around, a little more of
-/// it from above.
+/// What each object looks like, laid out for shading.
 class Shader {
   public:
-    Shader(const Scene& scene, const Camera& camera, const ShadingSettings& settings);
+    /// `tracer` answers shadow rays. Throws UsageError where a material is for no object.
+    Shader(const Scene& scene, const Tracer& tracer, const Camera& camera,
+           const ShadingSettings& settings);
+
+    /// What the shares of light from all around are asked for; null: everything lies open.
+    void use(const AmbientOcclusion* ambient) { ambient_ = ambient; }
 
     /// Colours of what a packet saw. Normals must be of unit length and face the viewer. False
     /// where all of it is background.
-    bool shade(const HitPacket& hits, ColorPacket& colors) const;
-    /// The same, from normals that `smooth` has made.
-    bool shade(const HitPacket& hits, const NormalPacket& normals, ColorPacket& colors) const;
+    bool shade(const SurfacePacket& surface, ColorPacket& colors) const;
+    /// The same, from geometric normals.
+    bool shade(const RayPacket& rays, const PointPacket& points, const HitPacket& hits,
+               ColorPacket& colors) const;
     /// Shading normals: interpolated where a mesh has normals at its corners, else geometric.
     void smooth(const HitPacket& hits, NormalPacket& normals) const;
     /// Normals that creases are found by, see NormalSource.
@@ -62,39 +76,44 @@ class Shader {
     void prefetch(const HitPacket& hits) const;
 
     const ColorPacket& background() const { return background_; }
+    const DepthCue& depth_cue() const { return depth_cue_; }
 
   private:
     struct Surface {
         Color color;
+        float specular = 0.0F, roughness = 1.0F, metal = 0.0F;
         const Rgb8* primitive_colors = nullptr;
         const Rgb8* vertex_colors = nullptr;
         const Mesh::Triangle* triangles = nullptr;
         const std::uint32_t* corner_normals = nullptr;  ///< three a triangle
         const std::uint32_t* line_normals = nullptr;    ///< likewise; null: geometric
     };
-    struct Lighting {
-        Vec3f key_dir, fill_dir, up;
-        float key, fill, ambient_middle, ambient_slope;
-        float toon_steps;  ///< 0: smooth
-    };
-
     static Color surface_color(const Surface& surface, const HitPacket& hits, int lane);
-    void look_up_colors(const HitPacket& hits, std::uint32_t object, ColorPacket& colors) const;
+    void look_up_colors(const HitPacket& hits, std::uint32_t object, ColorLanes& colors) const;
+    void look_up_gloss(const HitPacket& hits, Gloss& gloss) const;
+    void illuminate(const SurfacePacket& surface, const ColorLanes& base, ColorLanes& lit) const;
+    void add_fog(const SurfacePacket& surface, ColorLanes& lit) const;
+    static void finish(const HitPacket& hits, const ColorLanes& lit, const ColorPacket& background,
+                       ColorPacket& colors);
+    void add_surface(const Object& object, const ResolvedMaterial& material, NormalSource usual);
     /// `source` is one of a surface's two arrays of normals.
     void interpolate(const HitPacket& hits, const std::uint32_t* Surface::*source,
                      NormalPacket& normals) const;
     /// For the lanes that hit `object`.
     static void interpolate_normals(const std::uint32_t* corner_normals, std::uint32_t object,
                                     const HitPacket& hits, NormalPacket& normals);
-    static void illuminate(const HitPacket& hits, const NormalPacket& normals,
-                           const Lighting& lighting, const ColorPacket& background,
-                           ColorPacket& colors);
-
     std::vector<Surface> surfaces_;
     bool any_smooth_ = false;        ///< has normals at corners
     bool any_line_normals_ = false;  ///< has line normals other than its corner normals
+    bool any_gloss_ = false;         ///< has highlights or metal
     ShadeMode mode_;
-    Lighting lighting_{};
+    float pastel_;
+    LightRig lights_;
+    Shadows shadows_;
+    const AmbientOcclusion* ambient_ = nullptr;
+    DepthCue depth_cue_;
+    float fog_;
+    Color background_color_;
     ColorPacket background_;
 };
 
