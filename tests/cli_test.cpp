@@ -750,10 +750,26 @@ TEST_F(CommandLine, WritesAovsAsChannelsOfAnExr) {
     auto channels = read_exr(file("a.exr")).channels;
     std::set<std::string> names;
     for (const auto& [name, values] : channels) names.insert(name);
-    EXPECT_EQ(names,
-              (std::set<std::string>{"R", "G", "B", "A", "id.primitive", "id.part", "id.object",
-                                     "Z", "N.X", "N.Y", "N.Z", "P.X", "P.Y", "P.Z", "line.A",
-                                     "line.distance", "line.type", "line.id.near", "line.id.far"}));
+    EXPECT_EQ(names, (std::set<std::string>{"R",
+                                            "G",
+                                            "B",
+                                            "A",
+                                            "id.primitive",
+                                            "id.part",
+                                            "id.object",
+                                            "Z",
+                                            "N.X",
+                                            "N.Y",
+                                            "N.Z",
+                                            "P.X",
+                                            "P.Y",
+                                            "P.Z",
+                                            "line.A",
+                                            "line.distance",
+                                            "line.type",
+                                            "line.id.near",
+                                            "line.id.far",
+                                            "line.level"}));
 }
 
 TEST_F(CommandLine, WritesOnlyTheAovsThatAreAskedFor) {

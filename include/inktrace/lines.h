@@ -14,6 +14,7 @@ struct Polyline {
     /// are equal for the same geometry, 0 for the background, and names such as "1crn A C 17".
     std::uint32_t left = 0, right = 0;
     std::string left_name, right_name;
+    int level = 0;              ///< by way of how many mirrors or transparent surfaces it is seen
     bool left_in_front = true;  ///< which of them is nearer to the viewer
     bool hidden = false;        ///< on surfaces behind others
     bool closed = false;        ///< runs on from the last point to the first

@@ -137,6 +137,7 @@ std::vector<Polyline> Picture::lines() const {
         line.hidden = chain.hidden;
         line.closed = chain.closed;
         line.strength = static_cast<double>(chain.strength);
+        line.level = chain.level;
         for (const ink::Vec2f point : chain.points) line.points.push_back({point.x, point.y});
         line.depth = chain.t;
         lines.push_back(std::move(line));

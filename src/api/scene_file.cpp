@@ -115,17 +115,21 @@ class SceneReader {
         const auto materials = root_.find("materials");
         const auto found = materials ? materials->find(name) : std::nullopt;
         if (!found) node.fail(fmt::format("there is no material '{}' under \"materials\"", name));
-        found->allow_only({"color", "specular", "roughness", "metal"});
+        found->allow_only(
+            {"color", "specular", "roughness", "metal", "mirror", "transparency", "ior"});
         Material material;
         if (const auto color = found->find("color")) material.color = read_color(*color);
-        const auto read = [&](const char* key, double least, float& value) {
+        const auto read = [&](const char* key, double least, double most, float& value) {
             if (const auto given = found->find(key)) {
-                value = static_cast<float>(given->number(least, 1.0));
+                value = static_cast<float>(given->number(least, most));
             }
         };
-        read("specular", 0.0, material.specular);
-        read("roughness", kLeastRoughness, material.roughness);
-        read("metal", 0.0, material.metal);
+        read("specular", 0.0, 1.0, material.specular);
+        read("roughness", kLeastRoughness, 1.0, material.roughness);
+        read("metal", 0.0, 1.0, material.metal);
+        read("mirror", 0.0, 1.0, material.mirror);
+        read("transparency", 0.0, 1.0, material.transparency);
+        read("ior", 1.0, 4.0, material.ior);
         return material;
     }
 

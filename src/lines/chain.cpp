@@ -312,6 +312,7 @@ void Chainer::make_chain(Way first, ChainGraph& graph) {
     Chain chain;
     chain.type = segment(first).type;
     chain.hidden = segment(first).hidden;
+    chain.level = segment(first).level;
     chain.left = left(first);
     chain.right = right(first);
     chain.first_vertex = start(first);

@@ -20,6 +20,7 @@ struct Chain {
     bool left_in_front = true;  ///< which of the sides is nearer to the viewer
     float strength = 1.0F;      ///< mean over the length, [0, 1]
     bool hidden = false;        ///< on surfaces behind others
+    int level = 0;              ///< see Segment; chains of two levels are never joined
     bool closed = false;        ///< runs on from the last point to the first
     std::vector<Vec2f> points;  ///< pixels; at least two, three where closed
     std::vector<float> t;       ///< of the nearer side at each point, as in Segment
@@ -46,9 +47,9 @@ struct ChainGraph {
     std::vector<Path> paths;
 };
 
-/// Joins segments into chains: at bitwise equal ends, and where an end lies on another segment of
-/// its cell. `spacing` is the lattice's, in pixels. The result does not depend on the order of the
-/// segments, and so not on how the picture was cut into tiles.
+/// Joins segments, which must be of one level, into chains: at bitwise equal ends, and where an end
+/// lies on another segment of its cell. `spacing` is the lattice's, in pixels. The result does not
+/// depend on the order of the segments, and so not on how the picture was cut into tiles.
 ChainGraph chain_segments(std::span<const Segment> segments, float spacing);
 
 /// Length of the polyline, pixels.

@@ -30,7 +30,7 @@ void LinePlanes::begin(int x0, int y0, int width, int height) {
     const std::size_t size = index(0, height);
     distance_.assign(size, std::numeric_limits<float>::infinity());
     t_.assign(size, std::numeric_limits<float>::infinity());
-    for (auto* plane : {&type_, &near_id_, &far_id_}) plane->assign(size, 0);
+    for (auto* plane : {&type_, &near_id_, &far_id_, &level_}) plane->assign(size, 0);
 }
 
 void LinePlanes::add(const Segment& segment, float width) {
@@ -53,14 +53,16 @@ void LinePlanes::add(const Segment& segment, float width) {
             const std::size_t k = index(x, y);
             distance_[k] = std::min(distance_[k], distance);
             // In an order of its own, so that it does not depend on that of the segments.
-            if (type_[k] != 0 && std::tie(t_[k], type_[k], near_id_[k], far_id_[k]) <=
-                                     std::tie(segment.t, type, segment.owner, far)) {
+            const std::uint32_t level = segment.level;
+            if (type_[k] != 0 && std::tie(t_[k], type_[k], near_id_[k], far_id_[k], level_[k]) <=
+                                     std::tie(segment.t, type, segment.owner, far, level)) {
                 continue;
             }
             t_[k] = segment.t;
             type_[k] = type;
             near_id_[k] = segment.owner;
             far_id_[k] = far;
+            level_[k] = level;
         }
     }
 }

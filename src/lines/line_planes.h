@@ -29,12 +29,14 @@ class LinePlanes {
     /// Of the line on top: the geometry that it belongs to, and the one on its other side.
     const std::vector<std::uint32_t>& near_id() const { return near_id_; }
     const std::vector<std::uint32_t>& far_id() const { return far_id_; }
+    /// Of the line on top: Segment::level.
+    const std::vector<std::uint32_t>& level() const { return level_; }
 
   private:
     int x0_ = 0, y0_ = 0, width_ = 0, height_ = 0;
     std::vector<float> distance_;
     std::vector<float> t_;  ///< of the line on top
-    std::vector<std::uint32_t> type_, near_id_, far_id_;
+    std::vector<std::uint32_t> type_, near_id_, far_id_, level_;
 };
 
 }  // namespace ink

@@ -244,7 +244,7 @@ void Locator::split(std::size_t k, Vec2f point, const Sample& sample) {
 
 /// Tangent of the angle between a surface and the plane across the ray that hit it.
 float Locator::slope(const Sample& sample) const {
-    const float cosine = std::abs(dot(sample.normal, viewpoint_.ray_direction(sample.position)));
+    const float cosine = std::abs(dot(sample.normal, viewpoint_.ray_direction(sample)));
     return std::sqrt(std::max(1.0F - cosine * cosine, 0.0F)) / std::max(cosine, 1e-6F);
 }
 
@@ -255,7 +255,7 @@ float Locator::steeper_slope(const Interval& interval) const {
 /// Difference of the depths on the two sides.
 float Locator::gap(const Interval& interval) const {
     const Vec3f chord = interval.at_b.position - interval.at_a.position;
-    return std::abs(dot(chord, viewpoint_.ray_direction(interval.at_a.position)));
+    return std::abs(dot(chord, viewpoint_.ray_direction(interval.at_a)));
 }
 
 /// Whether two surfaces touch at the crossing between them, going by their depths on its two sides.

@@ -35,6 +35,8 @@ struct Segment {
     bool spans_cell =
         false;            ///< runs from one side of its cell to another, not to a junction in it
     bool hidden = false;  ///< on a surface behind others
+    /// How many mirrors, panes of glass and transparent surfaces it is seen by: 0 if directly.
+    std::uint8_t level = 0;
 };
 
 }  // namespace ink

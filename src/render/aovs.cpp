@@ -33,7 +33,8 @@ AovWriter::AovWriter(const Scene& scene, const Camera& camera, const std::vector
                 lines_ = add_planes({"line.A"});
                 if (!located) break;
                 line_planes_ = add_planes({"line.distance"});
-                for (const char* name : {"line.type", "line.id.near", "line.id.far"}) {
+                for (const char* name :
+                     {"line.type", "line.id.near", "line.id.far", "line.level"}) {
                     film.add_plane<std::uint32_t>(name);
                 }
                 break;
@@ -62,7 +63,8 @@ void AovWriter::put_lines(int x0, int y0, int x1, int y1, const LinePlanes& line
         const std::size_t k = lines.index(0, y - y0);
         std::size_t plane = *line_planes_;
         film_.put_row(plane++, x0, y, x1 - x0, lines.distance().data() + k);
-        for (const auto* values : {&lines.type(), &lines.near_id(), &lines.far_id()}) {
+        for (const auto* values :
+             {&lines.type(), &lines.near_id(), &lines.far_id(), &lines.level()}) {
             film_.put_row(plane++, x0, y, x1 - x0, values->data() + k);
         }
     }

@@ -12,7 +12,8 @@ inline constexpr double kShortestHidden = 3.0;
 
 /// The lines of a frame as data, for what is not made of pixels.
 struct Drawing {
-    /// Those of the types that were asked for, and all that divide two geometries. Their order
+    /// Those of the types that were asked for, and all that divide two geometries as they are seen
+    /// directly. Their order
     /// depends on the tiles; `left_sample` and `right_sample` mean nothing any more.
     /// `t` is the distance from the eye, or from the camera's plane, as in the AOV Z.
     std::vector<Segment> segments;

@@ -22,6 +22,16 @@ bool has_object_rules(const Settings& settings) {
                                [](const LineRule& rule) { return rule.object > 0; });
 }
 
+/// Levels with styles of their own: up to the highest that a rule names, and one for those beyond.
+int levels_of(const Pipeline& pipeline) {
+    int levels = 1;
+    if (!pipeline.goes_on()) return levels;
+    for (const LineRule& rule : pipeline.settings.line_rules) {
+        if (rule.level) levels = std::max(levels, *rule.level + 2);
+    }
+    return levels;
+}
+
 LineStyle line_style(const Film& film, const StrokeStyle& style) {
     return {static_cast<float>(style.width_px), film.in_blend_space(style.color),
             static_cast<float>(style.opacity)};
@@ -39,11 +49,12 @@ InkSettings ink_settings(const Pipeline& pipeline) {
     InkSettings ink;
     ink.profile = settings.profile();
     const int told_apart = has_object_rules(settings) ? objects : 1;
-    for (int object = 1; object <= told_apart; ++object) {
-        for (int type = 0; type < kLineTypes; ++type) {
-            const auto line_type = static_cast<LineType>(type);
-            ink.styles.push_back(line_style(pipeline.film, settings.line_style(line_type, object)));
-        }
+    const int levels = levels_of(pipeline);
+    for (int k = 0; k < levels * told_apart * kLineTypes; ++k) {
+        const int group = k / kLineTypes;
+        ink.styles.push_back(line_style(
+            pipeline.film, settings.line_style(static_cast<LineType>(k % kLineTypes),
+                                               group % told_apart + 1, group / told_apart)));
     }
     if (!settings.draws_hidden()) return ink;
     for (int object = 1; object <= told_apart; ++object) {
@@ -67,6 +78,7 @@ Edges::Edges(const Pipeline& shared)
       smooth_shading(shared.settings.smoothing().kind == AntiAliasing::Kind::edges),
       wanted(shared.settings.lines),
       styles_by_object(has_object_rules(shared.settings)),
+      style_levels(levels_of(shared)),
       ink(ink_settings(shared)) {
     // A sharp corner can look like a jump before it is located.
     detect.depths = smooth_shading || wanted.has(LineType::self_occlusion) ||
@@ -102,9 +114,11 @@ std::size_t Edges::style_of(const Segment& segment) const {
     const auto type = static_cast<std::size_t>(segment.type);
     const bool by_object = styles_by_object && segment.owner != kBackground;
     const std::size_t object = by_object ? pipeline.ids.object_of(segment.owner) : 0;
-    if (!segment.hidden) return object * kLineTypes + type;
     const std::size_t objects = styles_by_object ? pipeline.scene.objects().size() : 1;
-    return objects * kLineTypes + object;
+    const auto levels = static_cast<std::size_t>(style_levels);
+    if (segment.hidden) return levels * objects * kLineTypes + object;
+    const std::size_t level = std::min<std::size_t>(segment.level, levels - 1);
+    return (level * objects + object) * kLineTypes + type;
 }
 
 std::size_t Edges::search_tile_at(Vec2f point) const {
@@ -134,7 +148,8 @@ void keep_lines(const Edges& edges, const std::vector<std::vector<ColoredSegment
     for (const std::vector<ColoredSegment>& tile : found) {
         for (const ColoredSegment& line : tile) {
             const Segment& segment = line.segment;
-            if (segment.left != segment.right || edges.wanted.has(segment.type)) {
+            const bool divides = segment.left != segment.right && segment.level == 0;
+            if (divides || edges.wanted.has(segment.type)) {
                 drawing.segments.push_back(segment);
             }
         }
@@ -199,13 +214,22 @@ RenderStats render_edges(const Pipeline& pipeline, const RenderControl& control)
         if (finder) density += finder->density();
     }
     density.finish();
+    LineDensity direct = edges.no_lines;
+    if (pipeline.goes_on()) {
+        for (const auto& finder : finders) {
+            if (finder) direct += finder->direct_density();
+        }
+        direct.finish();
+    }
     if (pipeline.lines.drawing != nullptr)
         keep_lines(edges, found, hidden, *pipeline.lines.drawing);
     if (edges.draw_lines && !edges.behind.empty()) add_strokes(edges, hidden, found);
 
     std::vector<std::unique_ptr<LineDrawer>> drawers(pool);
     loop.run(edges.draw_tiles.size(), [&](std::size_t i, std::size_t worker) {
-        if (!drawers[worker]) drawers[worker] = std::make_unique<LineDrawer>(edges, density);
+        if (!drawers[worker])
+            drawers[worker] =
+                std::make_unique<LineDrawer>(edges, pipeline.goes_on() ? direct : density, density);
         drawers[worker]->draw(edges.draw_tiles[i], found);
     });
 

@@ -43,7 +43,10 @@ struct Edges {
     LocateSettings locate;
     LineTypes wanted;
     bool styles_by_object;
-    InkSettings ink;  ///< styles by type, object after object where they have styles of their own
+    int style_levels;  ///< levels with styles of their own, and those beyond: 1 if all are alike
+    /// Styles by type, object after object where they have styles of their own, and all that level
+    /// after level likewise.
+    InkSettings ink;
     /// Empty, for the tiles' workers to start from.
     LineDensity no_lines;
     Viewpoint viewpoint;

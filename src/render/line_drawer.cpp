@@ -37,7 +37,8 @@ void LineDrawer::draw(const Tile& tile, const std::vector<std::vector<ColoredSeg
 float LineDrawer::width_scale_at(const Segment& segment) const {
     const auto most = static_cast<float>(edges_.pipeline.settings.line_density);
     if (most >= 1.0F) return 1.0F;
-    return width_scale(density_.at((segment.a + segment.b) * 0.5F), most);
+    const LineDensity& density = segment.level == 0 ? direct_density_ : density_;
+    return width_scale(density.at((segment.a + segment.b) * 0.5F), most);
 }
 
 void LineDrawer::ink(const Segment& segment) {

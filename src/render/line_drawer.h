@@ -15,9 +15,9 @@ namespace ink {
 /// Draws the lines of one tile after another.
 class LineDrawer {
   public:
-    /// `density` is that of all lines found.
-    LineDrawer(const Edges& edges, const LineDensity& density)
-        : edges_(edges), density_(density), ink_(edges.ink) {}
+    /// `direct` is the density of the lines that are seen directly, `all` that of all lines found.
+    LineDrawer(const Edges& edges, const LineDensity& direct, const LineDensity& all)
+        : edges_(edges), direct_density_(direct), density_(all), ink_(edges.ink) {}
 
     void draw(const Tile& tile, const std::vector<std::vector<ColoredSegment>>& found);
 
@@ -36,6 +36,7 @@ class LineDrawer {
     void write_planes(const Tile& tile);
 
     const Edges& edges_;
+    const LineDensity& direct_density_;
     const LineDensity& density_;
     InkTile ink_;
     LinePlanes planes_;

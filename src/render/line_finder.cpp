@@ -126,6 +126,9 @@ void LineFinder::shade(const Tile& tile) {
                                     normals_[k]};
         seen_[k] = pipeline.shader.shade(surface, colors_[k]) ? 1 : 0;
     }
+    if (specular_) {
+        specular_->follow(grid_, {blocks_, sampler_.packets(), hits_, normals_}, colors_);
+    }
     const Size size = pipeline.film.size();
     for (int y = std::max(tile.y0, 0); y < std::min(tile.y1, size.height); y += kBlockSide) {
         for (int x = std::max(tile.x0, 0); x < std::min(tile.x1, size.width); x += kBlockSide) {
@@ -201,6 +204,12 @@ std::vector<ColoredSegment> LineFinder::find_lines() {
 
     std::vector<ColoredSegment> found;
     found.reserve(segments_.size());
+    keep(found);
+    return found;
+}
+
+/// Adds the segments at hand, with the colours of their sides.
+void LineFinder::keep(std::vector<ColoredSegment>& found) {
     for (const Segment& segment : segments_) {
         const auto color = [&](std::uint32_t index) -> std::array<float, 4> {
             if (!front_) return {};
@@ -208,11 +217,23 @@ std::vector<ColoredSegment> LineFinder::find_lines() {
             return color_at(static_cast<int>(index % width), static_cast<int>(index / width));
         };
         found.push_back({segment, color(segment.left_sample), color(segment.right_sample)});
-        if (front_ && edges_.draw_lines && edges_.wanted.has(segment.type)) {
-            density_.add(segment, edges_.ink.styles[edges_.style_of(segment)].width_px);
-        }
+        if (front_ && edges_.draw_lines && edges_.wanted.has(segment.type)) count(segment);
     }
-    return found;
+}
+
+/// What is seen in a mirror must not thin the lines of the mirror.
+void LineFinder::count(const Segment& segment) {
+    const float width = edges_.ink.styles[edges_.style_of(segment)].width_px;
+    density_.add(segment, width);
+    if (specular_ && segment.level == 0) direct_density_.add(segment, width);
+}
+
+void LineFinder::add_specular(std::vector<ColoredSegment>& found) {
+    const Timer timer(stats_.lines_ms);
+    if (!edges_.find_lines && !edges_.smooth_shading) return;
+    segments_.clear();
+    specular_->search(suspects_, crossings_, segments_);
+    keep(found);
 }
 
 /// The colours of a ridge's two sides are alike: smoothing has nothing to do there.
@@ -222,7 +243,7 @@ void LineFinder::add_ridges(const Tile& tile, std::vector<ColoredSegment>& found
     ridges_->search(tile, segments_);
     for (const Segment& segment : segments_) {
         found.push_back({segment, {}, {}});
-        density_.add(segment, edges_.ink.styles[edges_.style_of(segment)].width_px);
+        count(segment);
     }
 }
 

@@ -12,6 +12,7 @@
 #include "lines/segment.h"
 #include "render/edges_method.h"
 #include "render/ridge_search.h"
+#include "render/specular_search.h"
 #include "render/tiles.h"
 #include "sampling/sampler.h"
 #include "sampling/samples.h"
@@ -33,6 +34,7 @@ class LineFinder {
         trace_lattice(tile);
         if (front_) shade(tile);
         std::vector<ColoredSegment> found = find_lines();
+        if (specular_) add_specular(found);
         if (ridges_) add_ridges(tile, found);
         return found;
     }
@@ -46,10 +48,16 @@ class LineFinder {
 
     /// Of the lines found so far that are to be drawn.
     const LineDensity& density() const { return density_; }
+    /// Of those that are seen directly; unset without mirrors and glass.
+    const LineDensity& direct_density() const { return direct_density_; }
 
     RenderStats stats() const {
         RenderStats result = stats_;
         result.rays = sampler_.rays() + (ridges_ ? ridges_->rays() : 0);
+        if (specular_) {
+            result.rays += specular_->rays();
+            result.crossings += specular_->crossings();
+        }
         return result;
     }
 
@@ -64,10 +72,12 @@ class LineFinder {
               sample(points, out);
           }),
           describe_([this](std::size_t point, Sample& sample) { describe(point, sample); }),
-          density_(edges.no_lines) {
+          density_(edges.no_lines),
+          direct_density_(edges.no_lines) {
         if (front && edges.draw_lines && edges.wanted.has(LineType::ridge)) {
             ridges_.emplace(edges.pipeline, edges.q);
         }
+        if (front && edges.pipeline.goes_on()) specular_.emplace(edges);
     }
 
     bool wants_faces() const { return front_ && edges_.wants_faces(); }
@@ -77,6 +87,9 @@ class LineFinder {
     void put_pixels(int x, int y);
     void put_aovs(Block block);
     std::vector<ColoredSegment> find_lines();
+    void keep(std::vector<ColoredSegment>& found);
+    void count(const Segment& segment);
+    void add_specular(std::vector<ColoredSegment>& found);
     void add_ridges(const Tile& tile, std::vector<ColoredSegment>& found);
     void sample(std::span<const Vec2f> points, std::span<Sample> out);
     struct LatticeHit {
@@ -103,6 +116,7 @@ class LineFinder {
     SampleFunction sample_;
     SurfaceFunction describe_;
     std::optional<RidgeSearch> ridges_;
+    std::optional<SpecularSearch> specular_;
     Connector connector_;
     SampleGrid grid_;
     int blocks_across_ = 0;
@@ -118,7 +132,7 @@ class LineFinder {
     std::vector<Crossing> crossings_;
     std::vector<std::uint8_t> crossed_;  ///< a suspect: whether it has a crossing
     std::vector<Segment> segments_;
-    LineDensity density_;
+    LineDensity density_, direct_density_;
     RenderStats stats_;
 };
 

@@ -18,8 +18,16 @@ constexpr std::array<std::string_view, kLineTypes> kNames{
     "silhouette", "intersection", "self-occlusion", "crease", "boundary", "mesh", "ridge"};
 
 constexpr int kMostObjects = 1 << 24;
+constexpr int kMostLevels = 16;
 
 void read_target(std::string_view text, LineRule& rule) {
+    const std::size_t slash = text.find('/');
+    if (slash != std::string_view::npos) {
+        const std::string_view level = trim(text.substr(slash + 1));
+        rule.and_beyond = level == "+";
+        rule.level = rule.and_beyond ? 1 : read_int(level, 0, kMostLevels);
+        text = text.substr(0, slash);
+    }
     const std::size_t at = text.find('@');
     if (at != std::string_view::npos) rule.object = read_int(text.substr(at + 1), 1, kMostObjects);
     const std::string_view type = trim(text.substr(0, at));
@@ -58,11 +66,13 @@ std::string print(const LineRule& rule) {
     if (rule.width) properties.push_back(fmt::format("width={}", print(*rule.width)));
     if (rule.color) properties.push_back(fmt::format("color={}", to_string(*rule.color)));
     if (rule.opacity) properties.push_back(fmt::format("opacity={}", *rule.opacity));
-    return fmt::format("{}{}:{}",
+    std::string level;
+    if (rule.level) level = rule.and_beyond ? "/+" : fmt::format("/{}", *rule.level);
+    return fmt::format("{}{}{}:{}",
                        rule.hidden ? "hidden"
                        : rule.type ? name_of(*rule.type)
                                    : "all",
-                       rule.object > 0 ? fmt::format("@{}", rule.object) : "",
+                       rule.object > 0 ? fmt::format("@{}", rule.object) : "", level,
                        fmt::join(properties, ","));
 }
 

@@ -14,6 +14,7 @@
 #include "render/render.h"
 #include "render/settings.h"
 #include "sampling/line_ids.h"
+#include "sampling/optics.h"
 #include "shading/shading.h"
 
 namespace ink {
@@ -35,19 +36,22 @@ struct Pipeline {
           frame(scene_tracer.frame(camera.projection(), all.threads)),
           shader(scene, scene_tracer, camera, all.shading),
           ids(scene, all.ids),
+          optics(scene),
           unit(static_cast<float>(scene.frame().unit)),
           film(target),
           lines(line_output) {
         if (!all.aovs.empty()) aovs.emplace(scene, camera, all.aovs, locates(), target);
     }
 
-    /// Whether lines are located (method "edges"). Without lines and smoothing, both methods are
-    /// one ray a pixel.
+    /// Whether lines are located (method "edges"). Without lines, smoothing and mirrors, both
+    /// methods are one ray a pixel.
     bool locates() const {
         return settings.method == Method::edges &&
-               (settings.draws_lines() || lines.drawing != nullptr ||
+               (settings.draws_lines() || lines.drawing != nullptr || goes_on() ||
                 settings.smoothing().kind == AntiAliasing::Kind::edges);
     }
+    /// Whether rays go on from any surface.
+    bool goes_on() const { return optics.any() && settings.specular_depth > 0; }
 
     const Scene& scene;
     const Tracer& tracer;
@@ -56,6 +60,7 @@ struct Pipeline {
     std::unique_ptr<FrameTracer> frame;
     Shader shader;
     LineIds ids;
+    Optics optics;
     float unit;  ///< length of the scene's unit in those of the file
     Film& film;
     LineOutput lines;

@@ -363,7 +363,8 @@ std::vector<Setting> make_table() {
          [](const S& s) { return to_string(s.line_color); }, false, color()},
         {"line", "Lines", "RULE",
          "Method edges: TYPE:width=LEN,color=COLOR,opacity=F for lines of one type, all or hidden; "
-         "TYPE@K:... for those of the K-th object alone; may be repeated",
+         "TYPE@K:... for those of the K-th object alone, TYPE/N:... for those seen by way of N "
+         "mirrors or transparent surfaces, TYPE/+:... for all of these; may be repeated",
          [](S& s, Text t) {
              if (t.empty()) return s.line_rules.clear();
              for (LineRule& rule : read_line_rules(t)) s.line_rules.push_back(rule);
@@ -446,6 +447,12 @@ std::vector<Setting> make_table() {
              for (MaterialRule& rule : read_material_rules(t)) all.push_back(std::move(rule));
          },
          [](const S& s) { return print(s.shading.materials); }, true},
+        {"specular-depth", "Shading", "N",
+         "Method edges: how often a ray goes on from mirrors, glass and transparent surfaces, and "
+         "with it the lines that are seen there; 0 to 16",
+         [](S& s, Text t) { s.specular_depth = read_int(t, 0, kMostSpecularDepth); },
+         [](const S& s) { return fmt::format("{}", s.specular_depth); }, false,
+         whole(0, kMostSpecularDepth)},
         {"aa", "Shading", "MODE",
          "Smoothing of what is not a line: none, edges (method edges: mix the two sides' colours "
          "in "
@@ -561,10 +568,10 @@ void follow(const LineRule& rule, const Settings& settings, StrokeStyle& style) 
 
 }  // namespace
 
-StrokeStyle Settings::line_style(LineType type, int object) const {
+StrokeStyle Settings::line_style(LineType type, int object, int level) const {
     StrokeStyle style{line_width_px(), line_color, 1.0};
     for (const LineRule& rule : line_rules) {
-        if (rule.applies(type, object)) follow(rule, *this, style);
+        if (rule.applies(type, object, level)) follow(rule, *this, style);
     }
     return style;
 }

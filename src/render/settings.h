@@ -41,6 +41,8 @@ enum class Aov : std::uint8_t { id, depth, normal, position, lines };
 
 inline constexpr int kMostLatticePoints = 4;  ///< along a pixel's side
 
+inline constexpr int kMostSpecularDepth = 16;
+
 /// What SVG and PDF show below the lines.
 enum class Fill : std::uint8_t {
     none,
@@ -91,6 +93,7 @@ struct Settings {
 
     Compose compose = Compose::both;
     ShadingSettings shading;
+    int specular_depth = 4;  ///< hits of a ray after the first, [0, kMostSpecularDepth]
 
     std::optional<AntiAliasing> aa;  ///< default: the method's own, see smoothing()
     std::vector<Aov> aovs;
@@ -105,8 +108,8 @@ struct Settings {
 
     double line_width_px() const { return line_width.pixels(dpi, size.height); }
     double ridge_scale_px() const { return ridge_scale.pixels(dpi, size.height); }
-    /// How lines of a type are drawn that belong to an object, counted from 1.
-    StrokeStyle line_style(LineType type, int object) const;
+    /// How lines of a type and a level are drawn that belong to an object, counted from 1.
+    StrokeStyle line_style(LineType type, int object, int level = 0) const;
     /// Likewise, of hidden lines.
     StrokeStyle hidden_style(int object) const;
     /// The dashes of such a line of this length; nothing if it is solid.

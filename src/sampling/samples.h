@@ -32,6 +32,8 @@ struct Sample {
     /// Distance to the nearest open edge of the triangle that was hit, scene units; infinite where
     /// it has none.
     float rim = std::numeric_limits<float>::infinity();
+    /// Direction of the ray where it is not the viewer's: behind a mirror or glass. Else zero.
+    Vec3f ray{};
 };
 
 /// From where rays come.
@@ -50,6 +52,10 @@ struct Viewpoint {
     Affine origin, direction;
 
     Vec3f ray_direction(Vec3f at) const { return parallel ? dir : normalize(at - eye); }
+    /// Of the ray that made a sample.
+    Vec3f ray_direction(const Sample& sample) const {
+        return sample.ray == Vec3f{} ? ray_direction(sample.position) : sample.ray;
+    }
 };
 
 /// Asks for samples at points of the screen (pixels): as many out as in.

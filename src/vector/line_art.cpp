@@ -1,6 +1,7 @@
 #include "vector/line_art.h"
 
 #include <algorithm>
+#include <iterator>
 #include <utility>
 
 #include "lines/fit_chains.h"
@@ -28,26 +29,54 @@ std::optional<Rgb8> paper(const Settings& settings) {
     return settings.shading.background;
 }
 
+std::vector<Segment> of_level(const Drawing& drawing, int level) {
+    std::vector<Segment> segments;
+    std::ranges::copy_if(drawing.segments, std::back_inserter(segments),
+                         [&](const Segment& segment) { return segment.level == level; });
+    return segments;
+}
+
+int last_level(const Drawing& drawing) {
+    int last = 0;
+    for (const Segment& segment : drawing.segments) last = std::max<int>(last, segment.level);
+    return last;
+}
+
+/// Lines that may be joined, as curves.
+struct Layer {
+    ChainGraph graph;
+    std::vector<Curve> curves;
+};
+
+Layer make_layer(const std::vector<Segment>& segments, float spacing, const Settings& settings) {
+    Layer layer;
+    layer.graph = chain_segments(segments, spacing);
+    place_junctions(layer.graph, spacing);
+    layer.curves =
+        fit_chains(layer.graph, {.tolerance = settings.curve_tolerance_px}, settings.threads);
+    return layer;
+}
+
 /// Moves the lines that were asked for into the drawing, with their styles.
-void add_lines(const Settings& settings, ChainGraph& graph, std::vector<Curve>& curves,
-               LineArt& art) {
+void add_lines(const Settings& settings, Layer layer, LineArt& art) {
     const double shortest = settings.min_length.pixels(settings.dpi, settings.size.height);
-    for (std::size_t k = 0; k < graph.chains.size(); ++k) {
-        Chain& chain = graph.chains[k];
+    for (std::size_t k = 0; k < layer.graph.chains.size(); ++k) {
+        Chain& chain = layer.graph.chains[k];
         if (!settings.lines.has(chain.type)) continue;
         const double least = chain.hidden ? std::max(shortest, kShortestHidden) : shortest;
         const double size = least > 0.0 ? length_of(chain) : 0.0;
         if (size < least) continue;
         const GeometryId owner = front(chain) != kBackground ? front(chain) : behind(chain);
         const auto object = static_cast<int>(art.names.object_of(owner)) + 1;
-        const StrokeStyle style =
-            chain.hidden ? settings.hidden_style(object) : settings.line_style(chain.type, object);
+        const StrokeStyle style = chain.hidden
+                                      ? settings.hidden_style(object)
+                                      : settings.line_style(chain.type, object, chain.level);
         art.styles.push_back(style);
         art.dashes.push_back(chain.hidden
                                  ? settings.hidden_dashes(style.width_px, size, chain.closed)
                                  : std::nullopt);
         art.chains.push_back(std::move(chain));
-        art.curves.push_back(std::move(curves[k]));
+        art.curves.push_back(std::move(layer.curves[k]));
     }
 }
 
@@ -62,25 +91,23 @@ LineArt make_line_art(const Scene& scene, const Settings& settings, const Drawin
     art.background = paper(settings);
     art.names = GeometryNames(scene, settings.ids);
 
-    ChainGraph graph = chain_segments(drawing.segments, drawing.spacing);
-    place_junctions(graph, drawing.spacing);
-    const FitSettings fit{.tolerance = settings.curve_tolerance_px};
-    std::vector<Curve> curves = fit_chains(graph, fit, settings.threads);
-
+    const int levels = last_level(drawing) + 1;
+    Layer direct = make_layer(levels == 1 ? drawing.segments : of_level(drawing, 0),
+                              drawing.spacing, settings);
     const Fill fill = settings.compose == Compose::lines ? Fill::none : settings.fill;
     if (fill == Fill::flat) {
-        art.regions = make_regions(graph, curves, drawing.lower, drawing.upper);
+        art.regions = make_regions(direct.graph, direct.curves, drawing.lower, drawing.upper);
         color_regions(art.regions, image, settings.threads);
     }
     if (fill == Fill::image) art.image = image;
 
     if (!settings.draws_lines()) return art;
-    add_lines(settings, graph, curves, art);
+    add_lines(settings, std::move(direct), art);
+    for (int level = 1; level < levels; ++level) {
+        add_lines(settings, make_layer(of_level(drawing, level), drawing.spacing, settings), art);
+    }
     if (drawing.hidden.empty()) return art;
-    ChainGraph hidden = chain_segments(drawing.hidden, drawing.spacing);
-    place_junctions(hidden, drawing.spacing);
-    std::vector<Curve> hidden_curves = fit_chains(hidden, fit, settings.threads);
-    add_lines(settings, hidden, hidden_curves, art);
+    add_lines(settings, make_layer(drawing.hidden, drawing.spacing, settings), art);
     return art;
 }
 

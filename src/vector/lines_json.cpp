@@ -49,9 +49,9 @@ Json geometries(const LineArt& art) {
 void append_line(std::string& text, const Chain& chain) {
     const auto out = std::back_inserter(text);
     fmt::format_to(out,
-                   "{{\"type\":\"{}\",\"left\":{},\"right\":{},\"front\":\"{}\",\"closed\":{},{}"
-                   "\"strength\":{:.4g},\"points\":[",
-                   name_of(chain.type), chain.left, chain.right,
+                   "{{\"type\":\"{}\",\"level\":{},\"left\":{},\"right\":{},\"front\":\"{}\","
+                   "\"closed\":{},{}\"strength\":{:.4g},\"points\":[",
+                   name_of(chain.type), chain.level, chain.left, chain.right,
                    chain.left_in_front ? "left" : "right", chain.closed,
                    chain.hidden ? "\"hidden\":true," : "", chain.strength);
     for (std::size_t k = 0; k < chain.points.size(); ++k) {

@@ -182,6 +182,7 @@ void SvgText::add_line(std::size_t k, const StrokeStyle& usual) {
     if (behind(chain) != front(chain) && behind(chain) != kBackground) {
         add(" data-behind=\"{}\"", xml_text(art_.names(behind(chain)).label()));
     }
+    if (chain.level > 0) add(" data-level=\"{}\"", chain.level);
     const StrokeStyle& style = art_.styles[k];
     if (style.color != usual.color || style.width_px != usual.width_px) add_style(style);
     const double opacity = style.opacity * static_cast<double>(chain.strength);
