@@ -21,9 +21,8 @@ float turn(const Sample& a, const Sample& b) { return length(b.normal - a.normal
 
 /// Which of two neighbouring intervals to keep: the one where this is larger. A sharp corner
 /// halfway between two hits shows no jump, so the turn counts as well, as if over half of `scale`.
-float discontinuity(const Sample& a, const Sample& b, Suspicion suspicion, float scale) {
-    const float turned = turn(a, b);
-    return suspicion == Suspicion::depth ? depth_jump(a, b) + 0.5F * scale * turned : turned;
+float discontinuity(const Sample& a, const Sample& b, float scale) {
+    return depth_jump(a, b) + 0.5F * scale * turn(a, b);
 }
 
 constexpr auto kRadiansPerDegree = static_cast<float>(std::numbers::pi / 180.0);
@@ -38,6 +37,17 @@ float smoothstep(float from, float to, float x) {
 bool one_facet(const Sample& a, const Sample& b) {
     constexpr float kOneDegree = 0.99985F;
     return dot(a.facet, b.facet) > kOneDegree;
+}
+
+/// Of the tangent plane: the facet's, where it is known.
+Vec3f plane_normal(const Sample& sample) {
+    return dot(sample.facet, sample.facet) > 0.0F ? sample.facet : sample.normal;
+}
+
+/// Whether the normal is that of the surface itself, not one interpolated over a facet.
+bool is_curved(const Sample& sample) {
+    constexpr float kSame = 1.0F - 1e-6F;
+    return dot(plane_normal(sample), sample.normal) > kSame;
 }
 
 bool same_surface(const Sample& a, const Sample& b) { return a.id == b.id && a.ball == b.ball; }
@@ -112,6 +122,7 @@ void Locator::start(const SampleGrid& grid, std::span<const SuspectEdge> edges,
         }
         if (interval.state == State::foreseen) continue;
         interval.first_jump = depth_jump(interval.at_a, interval.at_b);
+        interval.first_gap = gap(interval);
         interval.first_turn = turn(interval.at_a, interval.at_b);
     }
 }
@@ -175,9 +186,18 @@ void Locator::check(std::size_t k, Vec2f point, const Sample& sample) {
     }
     interval.prediction.reset();
     if (!as_first && !as_second) return split(k, point, sample);
-    (as_second ? interval.b : interval.a) = point;
-    (as_second ? interval.at_b : interval.at_a) = sample;
-    (as_second ? interval.b_moved : interval.a_moved) = true;
+    move_end(interval, !as_second, point, sample);
+}
+
+/// Makes `point` the interval's first or second end.
+void Locator::move_end(Interval& interval, bool first, Vec2f point, const Sample& sample) const {
+    Sample& end = first ? interval.at_a : interval.at_b;
+    const float cosine = end.id == sample.id && end.id != kBackground ? facing(end) : -1.0F;
+    (first ? interval.before_a : interval.before_b) = std::copysign(cosine * cosine, cosine);
+    (first ? interval.point_before_a : interval.point_before_b) = first ? interval.a : interval.b;
+    (first ? interval.a : interval.b) = point;
+    (first ? interval.a_moved : interval.b_moved) = true;
+    end = sample;
 }
 
 void Locator::narrow(std::size_t k, Vec2f point, const Sample& sample) {
@@ -191,12 +211,10 @@ void Locator::narrow(std::size_t k, Vec2f point, const Sample& sample) {
     } else {
         if (sample.id != interval.at_a.id) return split(k, point, sample);
         const float scale = length(interval.at_b.position - interval.at_a.position);
-        keep_first_half = discontinuity(interval.at_a, sample, interval.suspicion, scale) >=
-                          discontinuity(sample, interval.at_b, interval.suspicion, scale);
+        keep_first_half = discontinuity(interval.at_a, sample, scale) >=
+                          discontinuity(sample, interval.at_b, scale);
     }
-    (keep_first_half ? interval.b : interval.a) = point;
-    (keep_first_half ? interval.at_b : interval.at_a) = sample;
-    (keep_first_half ? interval.b_moved : interval.a_moved) = true;
+    move_end(interval, !keep_first_half, point, sample);
     ++interval.steps;
     // Neither grows again as the interval shrinks.
     if (interval.suspicion != Suspicion::id && !has_jump(interval) && !has_crease(interval)) {
@@ -211,8 +229,10 @@ float Locator::jump_share(const Interval& interval) const {
 }
 
 bool Locator::has_jump(const Interval& interval) const {
-    return interval.suspicion == Suspicion::depth &&
-           depth_jump(interval.at_a, interval.at_b) > jump_share(interval) * interval.first_jump;
+    if (interval.suspicion == Suspicion::id) return false;
+    const float share = jump_share(interval);
+    return depth_jump(interval.at_a, interval.at_b) > share * interval.first_jump ||
+           gap(interval) > share * interval.first_gap;
 }
 
 /// The two sides of a sharp corner do not fit one smooth surface either: what was suspected to be a
@@ -242,9 +262,14 @@ void Locator::split(std::size_t k, Vec2f point, const Sample& sample) {
     intervals_.push_back(second);
 }
 
+/// Cosine of the angle between a surface's normal and the ray that hit it.
+float Locator::facing(const Sample& sample) const {
+    return std::abs(dot(sample.normal, viewpoint_.ray_direction(sample)));
+}
+
 /// Tangent of the angle between a surface and the plane across the ray that hit it.
 float Locator::slope(const Sample& sample) const {
-    const float cosine = std::abs(dot(sample.normal, viewpoint_.ray_direction(sample)));
+    const float cosine = facing(sample);
     return std::sqrt(std::max(1.0F - cosine * cosine, 0.0F)) / std::max(cosine, 1e-6F);
 }
 
@@ -258,19 +283,59 @@ float Locator::gap(const Interval& interval) const {
     return std::abs(dot(chord, viewpoint_.ray_direction(interval.at_a)));
 }
 
-/// Whether two surfaces touch at the crossing between them, going by their depths on its two sides.
+/// Whether two surfaces touch at the crossing between them.
 bool Locator::surfaces_meet(const Interval& interval) const {
-    constexpr float kRounding = 1e-6F;  // of positions, in a scene of size 1
+    return planes_meet(interval) && !has_limb(interval);
+}
+
+/// Each surface goes on as its tangent plane: where they cross in between, b's lies behind a at the
+/// first end and before it at the last, or the other way round.
+bool Locator::planes_meet(const Interval& interval) const {
+    constexpr float kRounding = 4e-6F;  // of positions, in a scene of size 1
+    const Sample& a = interval.at_a;
+    const Sample& b = interval.at_b;
+    const Vec3f ray = viewpoint_.ray_direction(a);
+    const Vec3f chord = b.position - a.position;
     const float along = gap(interval);
-    if (along <= kRounding) return true;
-    const bool at_limb = interval.slope > 0.0F &&
-                         steeper_slope(interval) > settings_.limb_growth * interval.slope &&
-                         along > settings_.limb_gap * interval.gap;
-    if (at_limb) return false;
-    const Vec3f chord = interval.at_b.position - interval.at_a.position;
     const float across = std::sqrt(std::max(dot(chord, chord) - along * along, 0.0F));
-    const float slopes = slope(interval.at_a) + slope(interval.at_b) + 1.0F;
-    return along <= settings_.meeting_slack * across * slopes;
+    const float contact = kRounding + across;
+    if (along <= contact) return true;
+    const auto behind_plane_of = [&](const Sample& sample) {
+        const Vec3f normal = plane_normal(sample);
+        return dot(normal, chord) / std::min(dot(normal, ray), -1e-6F);
+    };
+    const float at_a = behind_plane_of(b);
+    const float at_b = behind_plane_of(a);
+    const float beyond = settings_.meeting_slack * (at_b - at_a);
+    const auto [least, most] = std::minmax({at_a, at_b, at_a - beyond, at_b + beyond});
+    return least <= contact && most >= -contact;
+}
+
+/// Whether the depths differ by more than those of one surface can that curves from one normal to
+/// the other.
+bool Locator::leaps(const Interval& interval) const {
+    const Vec3f chord = interval.at_b.position - interval.at_a.position;
+    const float along = gap(interval);
+    const float across = std::sqrt(std::max(dot(chord, chord) - along * along, 0.0F));
+    return along * (facing(interval.at_a) + facing(interval.at_b)) > settings_.leap * 2.0F * across;
+}
+
+/// Whether the nearer surface turns away within the interval, going by how its normal turned over
+/// the last step. A facet does not turn, whatever the normals between its corners do.
+bool Locator::has_limb(const Interval& interval) const {
+    const bool a_in_front = interval.at_a.t <= interval.at_b.t;
+    const Sample& front = a_in_front ? interval.at_a : interval.at_b;
+    const float before = a_in_front ? interval.before_a : interval.before_b;
+    const float cosine = facing(front);
+    const float now = cosine * cosine;
+    if (before <= now || !is_curved(front)) return false;
+    if (interval.suspicion != Suspicion::id && !leaps(interval)) return false;
+    const Vec2f end = a_in_front ? interval.a : interval.b;
+    const Vec2f step = end - (a_in_front ? interval.point_before_a : interval.point_before_b);
+    const Vec2f across = interval.b - interval.a;
+    const float stepped = std::sqrt(dot(step, step));
+    const float width = std::sqrt(dot(across, across));
+    return now * stepped <= settings_.limb_slack * width * (before - now);
 }
 
 /// Where all steps led to a lattice point, it may be the only one to see what it sees: a ray that
@@ -311,13 +376,10 @@ void Locator::refine_steep(const SampleFunction& sample) {
     for (std::size_t k = 0; k < intervals_.size(); ++k) {
         Interval& interval = intervals_[k];
         if (interval.state != State::located || interval.at_a.id == kBackground ||
-            interval.at_b.id == kBackground || !surfaces_meet(interval)) {
+            interval.at_b.id == kBackground || !planes_meet(interval)) {
             continue;
         }
-        const float steeper = steeper_slope(interval);
-        if (steeper <= settings_.steep_slope) continue;
-        interval.slope = steeper;
-        interval.gap = gap(interval);
+        if (steeper_slope(interval) <= settings_.steep_slope) continue;
         active_.push_back(k);
     }
     for (int step = 0; step < settings_.steep_steps && !active_.empty(); ++step) {

@@ -24,24 +24,24 @@ struct LocateSettings {
     /// may be anyway; of 1ffk at 1024 x 1024 (radius 7) the picture stays the same to the eye and
     /// takes three quarters of the time. It bounds the rays where lines are dense.
     float least_checked = 10.0F;
-    /// Two surfaces meet if their depths on the two sides of a crossing differ by no more than this
-    /// many times what their slopes allow over the last interval.
-    float meeting_slack = 3.0F;
-    /// Where a slope is steeper than this, the interval says too little: bisect further, then
-    /// decide.
+    /// Two surfaces meet if their tangent planes do within the last interval, or this many lengths
+    /// of it beside it; the planes of facets are exact, those of curved surfaces nearly so.
+    float meeting_slack = 0.25F;
+    /// Where a slope is steeper than this, the planes say too little: bisect further, then decide.
     float steep_slope = 4.0F;
     int steep_steps = 5;
+    /// A surface turns away at a crossing if its slope, going on as it did, becomes infinite within
+    /// so many lengths of the last interval.
+    float limb_slack = 1.5F;
+    /// Within one geometry, and only if the depth differs by this many times what one surface that
+    /// curves from one normal to the other can do.
+    float leap = 1.5F;
     /// Each step must leave this share of a jump or a turn, or it is none: on a smooth surface a
     /// step halves it at least. The jump at a limb shrinks too, as the front surface's normal
     /// tilts, but only by the root of 1/2.
     float surviving_share = 0.6F;
     /// No step need leave less than this of a turn: the rest is the curve of the sides.
     float surviving_turn = 0.3F;
-    /// At a limb the slope grows by the root of 2 a step, and the difference of the depths shrinks
-    /// by no more; where surfaces meet, slopes stay and the difference shrinks by 2. Over the
-    /// `steep_steps` a limb's slope grows by this much at least, and this share of the gap is left.
-    float limb_growth = 2.0F;
-    float limb_gap = 0.125F;
     /// A surface ends at an open edge if the crossing lies within this many last intervals of one.
     float rim_slack = 2.0F;
     /// Creases: none below the first angle, full strength from the second on, smoothstep between.
@@ -91,9 +91,12 @@ class Locator {
         bool may_split = true;
         bool a_moved = false, b_moved = false;  ///< off the ends of the lattice edge
         std::uint32_t edge = 0;
-        float first_jump = 0.0F, first_turn = 0.0F;  ///< between the edge's ends
-        float gap = 0.0F, slope = 0.0F;              ///< where steep: before it was refined
-        int steps = 0;                               ///< of bisection so far
+        float first_jump = 0.0F, first_gap = 0.0F, first_turn = 0.0F;  ///< between the edge's ends
+        /// The square of the cosine between normal and ray, and where, at the ends before these:
+        /// it falls to zero along a straight line towards a limb. Negative: not known.
+        float before_a = -1.0F, before_b = -1.0F;
+        Vec2f point_before_a{}, point_before_b{};
+        int steps = 0;  ///< of bisection so far
         State state = State::open;
         std::optional<Prediction> prediction{};
     };
@@ -109,7 +112,11 @@ class Locator {
     void drop_specks(const SampleFunction& sample);
     bool is_speck(const Interval& interval, const Sample& beyond) const;
     void refine_steep(const SampleFunction& sample);
+    void move_end(Interval& interval, bool first, Vec2f point, const Sample& sample) const;
     bool surfaces_meet(const Interval& interval) const;
+    bool planes_meet(const Interval& interval) const;
+    bool leaps(const Interval& interval) const;
+    bool has_limb(const Interval& interval) const;
     bool has_jump(const Interval& interval) const;
     bool has_crease(const Interval& interval) const;
     bool classify(const Interval& interval, Crossing& crossing) const;
@@ -117,6 +124,7 @@ class Locator {
     bool classify_foreseen(const Interval& interval, Crossing& crossing) const;
     float crease_strength(float angle) const;
     float jump_share(const Interval& interval) const;
+    float facing(const Sample& sample) const;
     float slope(const Sample& sample) const;
     float steeper_slope(const Interval& interval) const;
     float gap(const Interval& interval) const;
