@@ -18,6 +18,7 @@
 
 #include "paths.h"
 #include "session/command_line.h"
+#include "session/line_rules.h"
 #include "session/pace.h"
 #include "test_files.h"
 
@@ -409,6 +410,21 @@ TEST(Session, TakesBackASettingThatTheFileRefuses) {
     EXPECT_NE(owner.session.message().text.find("no-such-field"), std::string::npos);
 }
 
+TEST(LineRules, GiveATypeAStyleAndLeaveTheOthers) {
+    LineRules rules("all:width=2px;crease:color=red,opacity=0.5;all@2:width=9px");
+    EXPECT_EQ(rules.get("crease", "width"), "2px");
+    EXPECT_EQ(rules.get("silhouette", "color"), std::nullopt);
+    rules.set("crease", "width", "4px");
+    rules.set("silhouette", "color", "#ff0000");
+    EXPECT_EQ(rules.text(),
+              "all:width=2px;crease:color=red,opacity=0.5,width=4px;silhouette:color=#ff0000;"
+              "all@2:width=9px");
+    rules.clear("crease");
+    EXPECT_FALSE(rules.has("crease"));
+    rules.set("silhouette", "color", "");
+    EXPECT_EQ(rules.text(), "all:width=2px;all@2:width=9px");
+}
+
 // ---- Files ----
 
 TEST(Session, SaysWhyAFileCannotBeShown) {
@@ -489,7 +505,7 @@ TEST(Session, TellsTheAtomUnderThePointer) {
         }
         return std::string();
     };
-    EXPECT_EQ(fact("atom"), "CA");
+    EXPECT_EQ(fact("name"), "CA");
     EXPECT_EQ(fact("residue"), "ALA 7");
     EXPECT_EQ(fact("chain"), "A");
     EXPECT_EQ(fact("bfactor"), "20.25");

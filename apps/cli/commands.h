@@ -16,4 +16,7 @@ void add_gallery_command(CLI::App& app);
 /// Adds `inktrace bench`.
 void add_bench_command(CLI::App& app);
 
+/// Adds `inktrace view`, which starts another program: the window's libraries are slow to load.
+void add_view_command(CLI::App& app);
+
 }  // namespace inktrace::cli

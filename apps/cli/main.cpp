@@ -76,6 +76,7 @@ int run(int argc, char** argv) {
     app.footer(formats);
     inktrace::cli::add_render_command(app);
     inktrace::cli::add_info_command(app);
+    inktrace::cli::add_view_command(app);
     inktrace::cli::add_gallery_command(app);
     inktrace::cli::add_bench_command(app);
     try {

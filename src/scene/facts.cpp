@@ -31,11 +31,11 @@ FactSource molecule_facts(Molecule molecule) {
         Facts facts;
         const Molecule& m = *kept;
         if (atom >= m.atom_count()) return facts;
-        if (atom < m.atom_names.size()) facts.emplace_back("atom", to_text(m.atom_names[atom]));
+        if (atom < m.atom_names.size()) facts.emplace_back("name", to_text(m.atom_names[atom]));
         facts.emplace_back("element", element(m.elements[atom]).symbol);
         if (const Residue* residue = m.residue(atom)) {
             facts.emplace_back("residue", fmt::format("{} {}", residue->name, residue->number));
-            if (residue->chain < m.chains.size()) {
+            if (residue->chain < m.chains.size() && !m.chains[residue->chain].empty()) {
                 facts.emplace_back("chain", m.chains[residue->chain]);
             }
         }

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <system_error>
 
+#include "base/text.h"
 #include "inktrace/error.h"
 
 namespace inktrace::viewer {
@@ -16,7 +17,10 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-bool is_scene(const fs::path& file) { return file.extension() == ".json"; }
+bool is_scene(const fs::path& file) {
+    const std::string name = ink::to_lower(file.filename().string());
+    return name.ends_with(".json") || name.ends_with(".json.gz");
+}
 
 bool is_of_run(const SettingInfo& info) { return info.topic == "Run"; }
 
@@ -32,7 +36,9 @@ void add_scene(const fs::path& file, Json& document) {
     Json scene = Json::parse(in, nullptr, false);
     if (scene.is_discarded() || !scene.is_object()) {
         throw Error(Error::Kind::input,
-                    fmt::format("{}: cannot be read again; it has changed", file.string()));
+                    fmt::format("{}: its objects cannot be copied into another scene; it has to be "
+                                "plain JSON",
+                                file.string()));
     }
     for (Json& object : scene["objects"]) {
         make_absolute(object, file);

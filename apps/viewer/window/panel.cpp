@@ -1,0 +1,194 @@
+#include "window/panel.h"
+
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include <algorithm>
+#include <set>
+
+#include "base/text.h"
+#include "session/line_rules.h"
+#include "window/setting_row.h"
+
+namespace inktrace::viewer {
+
+namespace {
+
+void buttons(Interface& interface) {
+    Session& session = interface.session;
+    const float width =
+        (ImGui::GetContentRegionAvail().x - 2.0F * ImGui::GetStyle().ItemSpacing.x) / 3.0F;
+    const auto button = [&](const char* label, bool enabled, const char* tip) {
+        ImGui::BeginDisabled(!enabled);
+        const bool pressed = ImGui::Button(label, {width, 0});
+        ImGui::EndDisabled();
+        if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", tip);
+        return pressed;
+    };
+    if (button("Undo", session.can_undo(), "Ctrl+Z")) session.undo();
+    ImGui::SameLine();
+    if (button("Redo", session.can_redo(), "Ctrl+Y")) session.redo();
+    ImGui::SameLine();
+    if (button("Reset", true, "All settings but the view as they were at the start")) {
+        session.reset();
+    }
+    if (button("Open...", true, "Ctrl+O, or drop files on the window")) {
+        interface.open_dialog = true;
+    }
+    ImGui::SameLine();
+    if (button("Export...", session.has_scene(), "Ctrl+E: picture, curves, scene")) {
+        interface.export_dialog = true;
+    }
+    ImGui::SameLine();
+    if (button("Help", true, "?: mouse and keyboard")) interface.help = true;
+}
+
+void describe_files(Interface& interface) {
+    for (const FileInfo& info : interface.session.infos()) {
+        std::string text = fmt::format("{}: {}", info.path.filename().string(), info.format);
+        for (const auto& [name, count] : info.counts) text += fmt::format(", {} {}", count, name);
+        ImGui::TextWrapped("%s", text.c_str());
+    }
+    if (interface.session.infos().empty()) ImGui::TextDisabled("No file");
+}
+
+void describe_picked(Interface& interface) {
+    if (!interface.picked) return;
+    if (!ImGui::CollapsingHeader("Picked", ImGuiTreeNodeFlags_DefaultOpen)) return;
+    const Hit& hit = *interface.picked;
+    const auto row = [&](const std::string& name, const std::string& value) {
+        ImGui::TextDisabled("%s", name.c_str());
+        ImGui::SameLine(interface.px(118));
+        ImGui::TextWrapped("%s", value.c_str());
+    };
+    row(hit.kind, fmt::format("{} of {}", hit.primitive + 1, hit.object));
+    for (const auto& [name, value] : hit.facts) row(name, value);
+    row("position",
+        fmt::format("{:.5g}, {:.5g}, {:.5g}", hit.position[0], hit.position[1], hit.position[2]));
+    if (ImGui::Button("Turn about it")) {
+        const ink::Vec3d center{hit.center[0], hit.center[1], hit.center[2]};
+        interface.session.move_camera(interface.session.camera().focused(center));
+    }
+    ImGui::SameLine();
+    if (ImGui::Button("Forget")) interface.picked.reset();
+}
+
+/// A type of line: on or off, its width and its colour.
+void line_type_row(Interface& interface, const std::string& type, LineRules& rules,
+                   std::set<std::string>& on, const ValueForm& types) {
+    const Settings& settings = interface.session.settings();
+    ImGui::PushID(type.c_str());
+    bool drawn = on.contains(type);
+    if (ImGui::Checkbox(type.c_str(), &drawn)) {
+        if (drawn) {
+            on.insert(type);
+        } else {
+            on.erase(type);
+        }
+        std::string list;
+        for (const std::string& word : types.words) {
+            if (on.contains(word)) list += (list.empty() ? "" : ",") + word;
+        }
+        interface.set("lines", list.empty() ? "none" : list);
+    }
+    if (drawn) {
+        const float reset = ImGui::GetFrameHeight();
+        const float color = ImGui::GetFrameHeight();
+        ImGui::SameLine(interface.px(132));
+        std::string width = rules.get(type, "width").value_or(settings.get("line-width"));
+        const float slider = ImGui::GetContentRegionAvail().x - reset - color - 2 * interface.px(6);
+        if (length_slider("##width", width, 0.25, 20.0, slider)) {
+            rules.set(type, "width", width);
+            interface.set("line", rules.text());
+        }
+        ImGui::SameLine();
+        std::string line_color = rules.get(type, "color").value_or(settings.get("line-color"));
+        if (color_button("##color", line_color)) {
+            rules.set(type, "color", line_color);
+            interface.set("line", rules.text());
+        }
+        if (rules.has(type)) {
+            ImGui::SameLine(ImGui::GetWindowContentRegionMax().x - reset);
+            if (ImGui::Button("x", {reset, 0})) {
+                rules.clear(type);
+                interface.set("line", rules.text());
+            }
+            if (ImGui::IsItemHovered()) ImGui::SetTooltip("As all other lines");
+        }
+    }
+    ImGui::PopID();
+}
+
+void line_types(Interface& interface) {
+    const auto& infos = all_settings();
+    const auto info = std::ranges::find(infos, "lines", &SettingInfo::name);
+    if (info == infos.end()) return;
+    const std::string value = interface.session.settings().get("lines");
+    std::set<std::string> on;
+    if (value == "all") {
+        on.insert(info->form.words.begin(), info->form.words.end());
+    } else {
+        for (const std::string_view word : ink::split(value, ',')) on.emplace(word);
+    }
+    LineRules rules(interface.session.settings().get("line"));
+    for (const std::string& type : info->form.words) {
+        line_type_row(interface, type, rules, on, info->form);
+    }
+    ImGui::Separator();
+}
+
+/// Settings that other parts of the window stand for.
+bool has_a_place_of_its_own(const std::string& name) {
+    return name == "size" || name == "lines" || name == "line" || name == "aov" || name == "tile";
+}
+
+/// Whether a setting has a say in the picture, by what its help begins with.
+bool counts(const Interface& interface, const SettingInfo& info) {
+    const Settings& settings = interface.session.settings();
+    const std::string other = settings.get("method") == "edges" ? "stencil" : "edges";
+    if (info.help.starts_with("Method " + other + ":")) return false;
+    const std::string lines = settings.get("lines");
+    const bool ridges = lines == "all" || lines.find("ridge") != std::string::npos;
+    return ridges || !info.help.starts_with("Apparent ridges:");
+}
+
+void topic(Interface& interface, const std::string& name) {
+    const bool open = name == "Lines" || name == "Shading" || name == "Look";
+    if (!ImGui::CollapsingHeader(name.c_str(), open ? ImGuiTreeNodeFlags_DefaultOpen : 0)) return;
+    if (name == "Lines") line_types(interface);
+    for (const SettingInfo& info : all_settings()) {
+        if (info.topic != name || has_a_place_of_its_own(info.name)) continue;
+        if (counts(interface, info)) setting_row(interface, info);
+    }
+    ImGui::Spacing();
+}
+
+/// Lines first, then as in the help.
+std::vector<std::string> topics() {
+    std::vector<std::string> names{"Lines", "Shading"};
+    for (const SettingInfo& info : all_settings()) {
+        if (std::ranges::find(names, info.topic) == names.end()) names.push_back(info.topic);
+    }
+    return names;
+}
+
+}  // namespace
+
+void draw_panel(Interface& interface, float left, float width, float height) {
+    ImGui::SetNextWindowPos({left, 0});
+    ImGui::SetNextWindowSize({width, height});
+    ImGui::Begin("##panel", nullptr,
+                 ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize |
+                     ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoMove |
+                     ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoNav);
+    buttons(interface);
+    ImGui::Spacing();
+    describe_files(interface);
+    ImGui::Spacing();
+    describe_picked(interface);
+    static const std::vector<std::string> kTopics = topics();
+    for (const std::string& name : kTopics) topic(interface, name);
+    ImGui::End();
+}
+
+}  // namespace inktrace::viewer

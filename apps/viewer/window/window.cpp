@@ -1,0 +1,280 @@
+#include "window/window.h"
+
+#include <GLFW/glfw3.h>
+#include <backends/imgui_impl_glfw.h>
+#include <backends/imgui_impl_opengl2.h>
+#include <dlfcn.h>
+#include <fmt/format.h>
+#include <imgui.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cstdio>
+#include <cstdlib>
+#include <utility>
+
+#include "inktrace/error.h"
+#include "window/theme.h"
+
+namespace inktrace::viewer {
+
+namespace {
+
+std::string last_error;
+
+/// Xlib ends the program when the connection breaks; this says so, without running the destructors
+/// of what other threads still use.
+int display_is_gone(void* /*display*/) {
+    constexpr char kText[] = "inktrace view: the display is gone\n";
+    if (write(STDERR_FILENO, kText, sizeof kText - 1) < 0) _exit(1);
+    _exit(1);
+}
+
+void watch_display() {
+    using Handler = int (*)(void*);
+    using SetHandler = Handler (*)(Handler);
+    // Where GLFW talks to an X server it has loaded this library.
+    void* const found = dlsym(RTLD_DEFAULT, "XSetIOErrorHandler");
+    if (found != nullptr) reinterpret_cast<SetHandler>(found)(display_is_gone);
+}
+
+bool is_set(const char* variable) {
+    const char* const value = std::getenv(variable);
+    return value != nullptr && value[0] != '\0';
+}
+
+[[noreturn]] void refuse() {
+    const bool any = is_set("DISPLAY") || is_set("WAYLAND_DISPLAY");
+    throw Error(Error::Kind::input,
+                any ? fmt::format("no window can be opened ({}); check the display and its OpenGL, "
+                                  "or write a picture with 'inktrace render'",
+                                  last_error)
+                    : "there is no display to open a window on (DISPLAY and WAYLAND_DISPLAY are "
+                      "not set); log in with 'ssh -X', or write a picture with 'inktrace render'");
+}
+
+std::string key_name(int key, int scancode) {
+    switch (key) {
+        case GLFW_KEY_LEFT: return "Left";
+        case GLFW_KEY_RIGHT: return "Right";
+        case GLFW_KEY_UP: return "Up";
+        case GLFW_KEY_DOWN: return "Down";
+        case GLFW_KEY_HOME: return "Home";
+        case GLFW_KEY_ESCAPE: return "Esc";
+        case GLFW_KEY_TAB: return "Tab";
+        case GLFW_KEY_F5: return "F5";
+        case GLFW_KEY_F11: return "F11";
+        default: break;
+    }
+    const char* const name = glfwGetKeyName(key, scancode);
+    if (name == nullptr || name[0] == '\0' || name[1] != '\0') return {};
+    const int upper = std::toupper(static_cast<unsigned char>(name[0]));
+    return std::string(1, static_cast<char>(upper));  // in parentheses: braces make a list
+}
+
+}  // namespace
+
+/// What GLFW calls. Dear ImGui passes on what it is told.
+struct Window::Callbacks {
+    static Window& of(GLFWwindow* window) {
+        return *static_cast<Window*>(glfwGetWindowUserPointer(window));
+    }
+    static Input at_pointer(GLFWwindow* window, Input::Kind kind) {
+        Input input{kind};
+        glfwGetCursorPos(window, &input.x, &input.y);
+        const auto down = [&](int key) { return glfwGetKey(window, key) == GLFW_PRESS; };
+        input.shift = down(GLFW_KEY_LEFT_SHIFT) || down(GLFW_KEY_RIGHT_SHIFT);
+        input.ctrl = down(GLFW_KEY_LEFT_CONTROL) || down(GLFW_KEY_RIGHT_CONTROL);
+        return input;
+    }
+    static void add(GLFWwindow* window, Input input) {
+        of(window).activity_ = true;
+        of(window).input_.push_back(std::move(input));
+    }
+
+    static void button(GLFWwindow* window, int button, int action, int /*mods*/) {
+        const bool down = action == GLFW_PRESS;
+        Input input = at_pointer(window, down ? Input::Kind::press : Input::Kind::release);
+        input.button = button;
+        add(window, input);
+    }
+    static void move(GLFWwindow* window, double x, double y) {
+        Window& self = of(window);
+        const auto [left, top, right, bottom] = self.quiet_;
+        const bool quiet = x >= left && x < right && y >= top && y < bottom;
+        self.activity_ |= !quiet;
+        self.input_.push_back(at_pointer(window, Input::Kind::move));
+    }
+    static void scroll(GLFWwindow* window, double /*x*/, double y) {
+        Input input = at_pointer(window, Input::Kind::scroll);
+        input.amount = y;
+        add(window, input);
+    }
+    static void key(GLFWwindow* window, int key, int scancode, int action, int mods) {
+        of(window).activity_ = true;
+        if (action == GLFW_RELEASE) return;
+        const std::string name = key_name(key, scancode);
+        const bool ctrl = (mods & (GLFW_MOD_CONTROL | GLFW_MOD_SUPER)) != 0;
+        // What types a character comes as a character, whatever the keyboard's layout.
+        if (name.empty() || (name.size() == 1 && !ctrl)) return;
+        Input input = at_pointer(window, Input::Kind::key);
+        const bool shift = (mods & GLFW_MOD_SHIFT) != 0;
+        input.key = std::string(ctrl ? "Ctrl+" : "") + (shift ? "Shift+" : "") + name;
+        add(window, input);
+    }
+    static void character(GLFWwindow* window, unsigned code) {
+        if (code >= 128) return;
+        Input input = at_pointer(window, Input::Kind::key);
+        input.key = code == ' ' ? "Space" : std::string(1, static_cast<char>(code));
+        add(window, input);
+    }
+    static void drop(GLFWwindow* window, int count, const char** names) {
+        of(window).activity_ = true;
+        of(window).drops_.assign(names, names + count);
+    }
+    static void refresh(GLFWwindow* window) { of(window).activity_ = true; }
+    static void resize(GLFWwindow* window, int /*width*/, int /*height*/) {
+        of(window).activity_ = true;
+    }
+    static void state(GLFWwindow* window, int /*on*/) { of(window).activity_ = true; }
+};
+
+Window::Window(ink::Size size, const std::string& title) {
+    glfwSetErrorCallback([](int /*code*/, const char* text) { last_error = text; });
+    if (glfwInit() == GLFW_FALSE) refuse();
+    glfwWindowHint(GLFW_SCALE_TO_MONITOR, GLFW_TRUE);
+    if (GLFWmonitor* const monitor = glfwGetPrimaryMonitor()) {
+        int x = 0;
+        int y = 0;
+        int width = 0;
+        int height = 0;
+        glfwGetMonitorWorkarea(monitor, &x, &y, &width, &height);
+        constexpr int kFrame = 40;  // of the window manager
+        if (width > kFrame && height > kFrame) {
+            size.width = std::min(size.width, width);
+            size.height = std::min(size.height, height - kFrame);
+        }
+    }
+    window_ = glfwCreateWindow(size.width, size.height, title.c_str(), nullptr, nullptr);
+    if (window_ == nullptr) {
+        glfwTerminate();
+        refuse();
+    }
+    watch_display();
+    glfwMakeContextCurrent(window_);
+    glfwSwapInterval(1);
+    glfwSetWindowUserPointer(window_, this);
+    glfwSetMouseButtonCallback(window_, Callbacks::button);
+    glfwSetCursorPosCallback(window_, Callbacks::move);
+    glfwSetScrollCallback(window_, Callbacks::scroll);
+    glfwSetKeyCallback(window_, Callbacks::key);
+    glfwSetCharCallback(window_, Callbacks::character);
+    glfwSetDropCallback(window_, Callbacks::drop);
+    glfwSetWindowRefreshCallback(window_, Callbacks::refresh);
+    glfwSetFramebufferSizeCallback(window_, Callbacks::resize);
+    glfwSetWindowIconifyCallback(window_, Callbacks::state);
+    glfwSetCursorEnterCallback(window_, Callbacks::state);
+    glfwSetWindowFocusCallback(window_, Callbacks::state);
+    start_interface();
+}
+
+void Window::start_interface() {
+    float scale = 1.0F;
+    glfwGetWindowContentScale(window_, &scale, nullptr);
+    scale_ = std::clamp(scale, 0.5F, 8.0F);
+    IMGUI_CHECKVERSION();
+    ImGui::CreateContext();
+    ImGui::GetIO().IniFilename = nullptr;  // leaves no file where it was started
+    set_theme(scale_);
+    ImGui_ImplGlfw_InitForOpenGL(window_, true);
+    ImGui_ImplOpenGL2_Init();
+}
+
+Window::~Window() {
+    if (texture_ != 0) glDeleteTextures(1, &texture_);
+    ImGui_ImplOpenGL2_Shutdown();
+    ImGui_ImplGlfw_Shutdown();
+    ImGui::DestroyContext();
+    glfwDestroyWindow(window_);
+    glfwTerminate();
+}
+
+bool Window::closed() const { return glfwWindowShouldClose(window_) != 0; }
+void Window::close() { glfwSetWindowShouldClose(window_, GLFW_TRUE); }
+void Window::set_title(const std::string& title) { glfwSetWindowTitle(window_, title.c_str()); }
+
+bool Window::visible() const {
+    const ink::Size now = size();
+    return now.width > 0 && now.height > 0 && glfwGetWindowAttrib(window_, GLFW_ICONIFIED) == 0;
+}
+
+ink::Size Window::size() const {
+    ink::Size size;
+    glfwGetFramebufferSize(window_, &size.width, &size.height);
+    return size;
+}
+
+void Window::wait(std::optional<std::chrono::steady_clock::time_point> until) {
+    if (!until) return glfwWaitEvents();
+    const std::chrono::duration<double> left = *until - std::chrono::steady_clock::now();
+    if (left.count() > 0.0) {
+        glfwWaitEventsTimeout(left.count());
+    } else {
+        glfwPollEvents();
+    }
+}
+
+void Window::wake() { glfwPostEmptyEvent(); }
+
+std::vector<Input> Window::take_input() { return std::exchange(input_, {}); }
+std::vector<std::filesystem::path> Window::take_drops() { return std::exchange(drops_, {}); }
+bool Window::take_activity() { return std::exchange(activity_, false); }
+bool Window::interface_has_pointer() const { return ImGui::GetIO().WantCaptureMouse; }
+bool Window::interface_has_keys() const { return ImGui::GetIO().WantTextInput; }
+
+void Window::begin_frame() {
+    ImGui_ImplOpenGL2_NewFrame();
+    ImGui_ImplGlfw_NewFrame();
+    ImGui::NewFrame();
+}
+
+void Window::end_frame() {
+    ImGui::Render();
+    const ink::Size now = size();
+    glViewport(0, 0, now.width, now.height);
+    constexpr float kGray = 0.25F;
+    glClearColor(kGray, kGray, kGray, 1.0F);
+    glClear(GL_COLOR_BUFFER_BIT);
+    ImGui_ImplOpenGL2_RenderDrawData(ImGui::GetDrawData());
+    glfwSwapBuffers(window_);
+}
+
+void* Window::texture(const Picture& picture, std::uint64_t number, bool smooth) {
+    if (texture_ == 0) glGenTextures(1, &texture_);
+    void* const id = reinterpret_cast<void*>(static_cast<std::uintptr_t>(texture_));
+    if (number == texture_number_) return id;
+    glBindTexture(GL_TEXTURE_2D, texture_);
+    const int filter = smooth ? GL_LINEAR : GL_NEAREST;
+    constexpr int kClampToEdge = 0x812F;  // OpenGL 1.2, which the header need not know
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, filter);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, filter);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, kClampToEdge);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, kClampToEdge);
+    glPixelStorei(GL_UNPACK_ROW_LENGTH, 0);
+    const ink::Size size{picture.width(), picture.height()};
+    if (size == texture_size_) {
+        glTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, size.width, size.height, GL_RGBA, GL_UNSIGNED_BYTE,
+                        picture.rgba().data());
+    } else {
+        glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA, size.width, size.height, 0, GL_RGBA,
+                     GL_UNSIGNED_BYTE, picture.rgba().data());
+    }
+    texture_size_ = size;
+    texture_number_ = number;
+    return id;
+}
+
+void Window::copy(const std::string& text) { glfwSetClipboardString(window_, text.c_str()); }
+
+}  // namespace inktrace::viewer

@@ -1,0 +1,84 @@
+#pragma once
+
+#include <array>
+#include <chrono>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/image.h"
+#include "inktrace/render.h"
+
+struct GLFWwindow;
+
+namespace inktrace::viewer {
+
+/// What a hand does, in the order in which it does it. Places are pixels of the window.
+struct Input {
+    enum class Kind { press, release, move, scroll, key };
+    Kind kind = Kind::move;
+    double x = 0.0, y = 0.0;  ///< of the pointer
+    int button = 0;           ///< 0 left, 1 right, 2 middle
+    double amount = 0.0;      ///< of scrolling, up is positive
+    std::string key{};        ///< "a", "?", "Left", "Ctrl+Z"
+    bool shift = false, ctrl = false;
+};
+
+/// A window with an OpenGL 2 context, which every X server and software renderer offers, and Dear
+/// ImGui in it. There can be one at a time, on the program's main thread.
+class Window {
+  public:
+    /// Throws Error (input) where there is no display to open it on.
+    Window(ink::Size size, const std::string& title);
+    Window(const Window&) = delete;
+    Window& operator=(const Window&) = delete;
+    ~Window();
+
+    bool closed() const;
+    void close();
+    void set_title(const std::string& title);
+    /// False while it is minimised or has no area.
+    bool visible() const;
+    ink::Size size() const;                 ///< pixels
+    float scale() const { return scale_; }  ///< of texts and buttons: 2 on a HiDPI screen
+
+    /// Sleeps until something happens, or until a moment. Any thread may `wake` it.
+    void wait(std::optional<std::chrono::steady_clock::time_point> until);
+    static void wake();
+
+    std::vector<Input> take_input();
+    std::vector<std::filesystem::path> take_drops();
+    /// Whether something has happened since the last call that the user interface has to show.
+    bool take_activity();
+    /// The pointer's moves inside a rectangle are no activity: left, top, right, bottom.
+    void set_quiet_area(const std::array<float, 4>& area) { quiet_ = area; }
+    /// Whether the user interface wants the pointer or the keys for itself.
+    bool interface_has_pointer() const;
+    bool interface_has_keys() const;
+
+    void begin_frame();
+    void end_frame();
+
+    /// The picture as a texture of Dear ImGui; it is uploaded when `number` is another one.
+    void* texture(const Picture& picture, std::uint64_t number, bool smooth);
+
+    void copy(const std::string& text);
+
+  private:
+    struct Callbacks;
+    void start_interface();
+
+    GLFWwindow* window_ = nullptr;
+    float scale_ = 1.0F;
+    std::vector<Input> input_;
+    std::vector<std::filesystem::path> drops_;
+    bool activity_ = true;
+    std::array<float, 4> quiet_{};
+    unsigned texture_ = 0;
+    ink::Size texture_size_;
+    std::uint64_t texture_number_ = 0;
+};
+
+}  // namespace inktrace::viewer
