@@ -65,7 +65,68 @@ TEST(MeshLines, TakeNoRays) {
     set(settings, "lines", "silhouette,intersection,self-occlusion,crease,boundary,mesh");
     render(scene, *tracer, settings, {}, {}, &with);
     EXPECT_EQ(with.rays, without.rays);
-    EXPECT_GT(with.crossings, without.crossings + 20);
+}
+
+/// A torus of 40 x 20 quadrilaterals, of two triangles each, that shows its hollow.
+Object coarse_torus() {
+    constexpr std::uint32_t kRound = 40;
+    constexpr std::uint32_t kTube = 20;
+    std::vector<Vec3f> vertices;
+    std::vector<Mesh::Triangle> triangles;
+    std::vector<std::uint32_t> faces;
+    for (std::uint32_t i = 0; i < kRound; ++i) {
+        for (std::uint32_t j = 0; j < kTube; ++j) {
+            const double u = 2.0 * std::numbers::pi * i / kRound;
+            const double v = 2.0 * std::numbers::pi * j / kTube;
+            const double from_axis = 60.0 + 25.0 * std::cos(v);
+            const Vec3d flat{from_axis * std::cos(u), from_axis * std::sin(u), 25.0 * std::sin(v)};
+            const double tilt = 50.0 * kDegrees;
+            vertices.push_back(
+                to_float(Vec3d{flat.x, flat.y * std::cos(tilt) - flat.z * std::sin(tilt),
+                               flat.y * std::sin(tilt) + flat.z * std::cos(tilt)}));
+            const auto at = [](std::uint32_t a, std::uint32_t b) {
+                return a % kRound * kTube + b % kTube;
+            };
+            triangles.push_back({at(i, j), at(i + 1, j), at(i + 1, j + 1)});
+            triangles.push_back({at(i, j), at(i + 1, j + 1), at(i, j + 1)});
+            faces.insert(faces.end(), 2, i * kTube + j);
+        }
+    }
+    Object object = mesh_object(std::move(vertices), std::move(triangles));
+    auto& mesh = std::get<Mesh>(object.shape);
+    mesh.faces = std::move(faces);
+    smooth_normals(mesh);
+    return object;
+}
+
+/// Drawn, they come from the nearest edge of what each pixel sees; as data, from crossings that are
+/// joined. Both must ink the same pixels.
+TEST(MeshLines, LookTheSameFromEdgesAndFromCrossings) {
+    const Scene scene({coarse_torus()});
+    const auto tracer = make_tracer(scene);
+    for (const double width : {1.0, 2.5}) {
+        Settings settings = plan_view({192, 160}, width);
+        set(settings, "lines", "silhouette,self-occlusion,mesh");
+        set(settings, "line-density", "1");
+        set(settings, "lattice", "4");
+        Drawing drawing;
+        const Film crossings = render(scene, *tracer, settings, {}, {}, nullptr, &drawing);
+        const auto& expected = plane(crossings, "line.A");
+        for (const char* q : {"1", "2", "3"}) {
+            SCOPED_TRACE("width " + std::to_string(width) + ", q = " + q);
+            set(settings, "lattice", q);
+            const Film edges = render(scene, *tracer, settings);
+            const auto& ink = plane(edges, "line.A");
+            EXPECT_LT(mean_difference(ink, expected), 0.005);
+            // Beside a limb, a line between faces may end a pixel earlier or later.
+            std::size_t far = 0;
+            for (std::size_t k = 0; k < ink.size(); ++k) {
+                far += std::abs(ink[k] - expected[k]) > 0.25F ? 1 : 0;
+            }
+            EXPECT_LT(far, ink.size() / 250);
+            EXPECT_GT(pixels_of(edges, LineType::mesh), 3000U);
+        }
+    }
 }
 
 TEST(MeshLines, FinerThanPixelsAreATone) {

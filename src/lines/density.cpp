@@ -42,11 +42,14 @@ float LineDensity::area(int i, int j) const {
 }
 
 void LineDensity::add(const Segment& segment, float width) {
-    const Vec2f middle = (segment.a + segment.b) * 0.5F;
     const Vec2f d = segment.b - segment.a;
-    const float inked = std::sqrt(d.x * d.x + d.y * d.y) * width;
-    const auto column = static_cast<int>(std::floor(middle.x / static_cast<float>(side_)));
-    const auto row = static_cast<int>(std::floor(middle.y / static_cast<float>(side_)));
+    add((segment.a + segment.b) * 0.5F, std::sqrt(d.x * d.x + d.y * d.y), width);
+}
+
+void LineDensity::add(Vec2f place, float length, float width) {
+    const float inked = length * width;
+    const auto column = static_cast<int>(std::floor(place.x / static_cast<float>(side_)));
+    const auto row = static_cast<int>(std::floor(place.y / static_cast<float>(side_)));
     // Lines may end a hair outside of what was searched.
     const int i = std::clamp(column, i0_, i0_ + across_ - 1);
     const int j = std::clamp(row, j0_, j0_ + down_ - 1);

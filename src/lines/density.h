@@ -22,6 +22,8 @@ class LineDensity {
     LineDensity(int x0, int y0, int x1, int y1, float widest);
 
     void add(const Segment& segment, float width);
+    /// Lines of that length in all about a place, pixels.
+    void add(Vec2f place, float length, float width);
     LineDensity& operator+=(const LineDensity& other);
     /// To be called after the last of them, before `at`.
     void finish();

@@ -56,19 +56,6 @@ void compare_rows(const Row& a, const Row& b, int count, const DetectSettings& s
 
 static_assert(static_cast<int>(Suspicion::id) == 1);
 
-/// Adds faces that differ to the suspicions between point `a` of a grid and `b`, and those next to
-/// them, if faces are known.
-void compare_faces(const SampleGrid& grid, std::size_t a, std::size_t b, int count,
-                   std::uint32_t* codes) {
-    if (grid.face.empty()) return;
-    const std::uint32_t* first = grid.face.data() + a;
-    const std::uint32_t* second = grid.face.data() + b;
-    constexpr auto kFace = static_cast<std::uint32_t>(Suspicion::face);
-    for (int i = 0; i < count; ++i) {
-        codes[i] = codes[i] == 0 && first[i] != second[i] ? kFace : codes[i];
-    }
-}
-
 /// `codes` has zeros behind its `count` entries, up to a multiple of kLanes.
 void collect(const std::uint32_t* codes, int count, int j, bool down,
              std::vector<SuspectEdge>& edges) {
@@ -94,13 +81,11 @@ void detect(const SampleGrid& grid, const DetectSettings& settings,
         const Row row(grid, grid.index(0, j));
         const Row right(grid, grid.index(1, j));
         compare_rows(row, right, grid.width - 1, settings, codes.data());
-        compare_faces(grid, grid.index(0, j), grid.index(1, j), grid.width - 1, codes.data());
         codes[static_cast<std::size_t>(grid.width) - 1] = 0;
         collect(codes.data(), grid.width - 1, j, false, edges);
         if (j + 1 == grid.height) break;
         const Row below(grid, grid.index(0, j + 1));
         compare_rows(row, below, grid.width, settings, codes.data());
-        compare_faces(grid, grid.index(0, j), grid.index(0, j + 1), grid.width, codes.data());
         collect(codes.data(), grid.width, j, true, edges);
     }
 }

@@ -11,10 +11,9 @@ namespace ink {
 /// Where a discontinuity may lie between two samples, and of which kind.
 enum class Suspicion : std::uint8_t {
     none,
-    id,      ///< the geometry ID differs
-    depth,   ///< same ID, and a surface through both would not fit their normals
-    normal,  ///< same ID, same surface, and the normal turns by more than the crease angle
-    face     ///< same ID, nothing else to see, and the face of the mesh changes
+    id,     ///< the geometry ID differs
+    depth,  ///< same ID, and a surface through both would not fit their normals
+    normal  ///< same ID, same surface, and the normal turns by more than the crease angle
 };
 
 /// Thresholds of detection. None has a length in it: scaling scene and camera changes nothing.

@@ -29,68 +29,121 @@ struct Stroke {
 /// A band this wide reaches beyond every pixel that its far edge could cut.
 constexpr float kWideHalf = 0.7072F;
 
+/// Pixels of a row that are drawn at once. Segments are short.
+constexpr int kRun = 8;
+
 template <bool kWide>
 INKTRACE_INLINE float coverage_at(float distance, float half, float nx, float ny) {
     return kWide ? square_coverage(half - distance, nx, ny) : band_coverage(distance, half, nx, ny);
 }
 
-/// Sixteen pixels of a row, from the one whose centre is (x, y) on.
+/// Pixels of a row, from the one whose centre is (x, y) on. What a pixel gets does not depend on
+/// where the run begins.
 template <bool kWide>
-INKTRACE_INLINE void draw_run(const Stroke& stroke, float x, float y, float* coverage, float* t) {
+INKTRACE_INLINE void draw_run(const Stroke& stroke, const SquareCoverage& band, float x, float y,
+                              float* coverage, float* t) {
     const auto [a, along, length, half, strength, stroke_t, profile] = stroke;
     const float ry = y - a.y;
-    const float left = x - a.x;
-    Lanes<float> inks;
-    for (int i = 0; i < kLanes; ++i) {
-        const float rx = left + static_cast<float>(i);
-        const float s = std::min(std::max(rx * along.x + ry * along.y, 0.0F), length);
-        const float vx = rx - s * along.x;
-        const float vy = ry - s * along.y;
-        const float distance = std::sqrt(vx * vx + vy * vy);
-        // On the line itself any normal of it will do.
-        const bool off = distance > 1e-4F;
-        const float inverse = 1.0F / std::max(distance, 1e-4F);
-        const float nx = off ? vx * inverse : -along.y;
-        const float ny = off ? vy * inverse : along.x;
-        // The round end of a segment must not claim more than its band does, or it would widen the
-        // lines that go on from it.
+    std::array<float, kRun> inks;
+    std::array<float, kRun> beyond;  // the segment's ends
+    std::uint32_t ends = 0;          // whether the run goes on beyond them
+    for (int i = 0; i < kRun; ++i) {
+        const float rx = (x + static_cast<float>(i)) - a.x;
+        const float s = rx * along.x + ry * along.y;
         const float across = std::abs(ry * along.x - rx * along.y);
-        const float band = coverage_at<kWide>(across, half, -along.y, along.x);
-        inks[i] = std::min(coverage_at<kWide>(distance, half, nx, ny), band) * strength;
+        beyond[i] = std::max(-s, s - length);
+        inks[i] = kWide ? band(half - across) : band(half - across) - band(-half - across);
+        ends |= inks[i] > 0.0F && beyond[i] > 0.0F ? 1U : 0U;
     }
-    for (int i = 0; i < kLanes; ++i) coverage[i] = std::max(coverage[i], inks[i]);
-    for (int i = 0; i < kLanes; ++i) t[i] = inks[i] > 0.0F ? std::min(t[i], stroke_t) : t[i];
-}
-
-/// Such runs one below the other, `stride` floats apart.
-INKTRACE_MULTIVERSION
-void draw_solid(const Stroke& stroke, float x, float y, int rows, std::size_t stride,
-                float* coverage, float* t) {
-    for (int row = 0; row < rows; ++row) {
-        const float below = y + static_cast<float>(row);
-        if (stroke.half >= kWideHalf) {
-            draw_run<true>(stroke, x, below, coverage, t);
-        } else {
-            draw_run<false>(stroke, x, below, coverage, t);
+    if (ends != 0) {
+        for (int i = 0; i < kRun; ++i) {
+            const float rx = (x + static_cast<float>(i)) - a.x;
+            const float s = std::min(std::max(rx * along.x + ry * along.y, 0.0F), length);
+            const float vx = rx - s * along.x;
+            const float vy = ry - s * along.y;
+            const float distance = std::max(std::sqrt(vx * vx + vy * vy), 1e-4F);
+            const float inverse = 1.0F / distance;
+            const float round = coverage_at<kWide>(distance, half, vx * inverse, vy * inverse);
+            // The round end of a segment must not claim more than its band does, or it would widen
+            // the lines that go on from it.
+            inks[i] = beyond[i] > 0.0F ? std::min(round, inks[i]) : inks[i];
         }
-        coverage += stride;
-        t += stride;
+    }
+    // Copies, which the compiler knows to be apart.
+    std::array<float, kRun> most;
+    std::array<float, kRun> nearest;
+    std::copy_n(coverage, kRun, most.data());
+    std::copy_n(t, kRun, nearest.data());
+    for (int i = 0; i < kRun; ++i) {
+        const float ink = inks[i] * strength;
+        most[i] = std::max(most[i], ink);
+        nearest[i] = std::min(nearest[i], ink > 0.0F ? stroke_t : kInfinity);
+    }
+    std::copy_n(most.data(), kRun, coverage);
+    std::copy_n(nearest.data(), kRun, t);
+}
+
+/// What a stroke may reach of the tile: pixels [left, right] x [top, bottom].
+struct Reach {
+    int left, right, top, bottom;
+};
+
+/// Draws on the rows of a tile whose upper left pixel has its centre at (x0, y0); `stride` is the
+/// length of a row in `coverage` and `t`.
+INKTRACE_MULTIVERSION
+void draw_solid(const Stroke& stroke, const Reach& reach, float x0, float y0, std::size_t stride,
+                float* coverage, float* t) {
+    const auto [a, along, length, half, strength, stroke_t, profile] = stroke;
+    const SquareCoverage band(along.y, along.x);
+    // Along a row the band takes this much to either side of its middle.
+    const float steep = std::abs(along.y);
+    const float drift = steep > 0.05F ? along.x / along.y : 0.0F;
+    const float side = steep > 0.05F ? (half + 0.75F) / steep : kInfinity;
+    for (int row = reach.top; row <= reach.bottom; ++row) {
+        const float y = y0 + static_cast<float>(row);
+        const float middle = a.x + (y - a.y) * drift - x0;
+        const int first = static_cast<int>(std::max(middle - side, static_cast<float>(reach.left)));
+        const int last = static_cast<int>(std::min(middle + side, static_cast<float>(reach.right)));
+        const std::size_t k = static_cast<std::size_t>(row) * stride;
+        for (int i = first; i <= last; i += kRun) {
+            const float x = x0 + static_cast<float>(i);
+            const std::size_t n = k + static_cast<std::size_t>(i);
+            if (half >= kWideHalf) {
+                draw_run<true>(stroke, band, x, y, coverage + n, t + n);
+            } else {
+                draw_run<false>(stroke, band, x, y, coverage + n, t + n);
+            }
+        }
     }
 }
 
-void draw_soft(const Stroke& stroke, float x, float y, int rows, std::size_t stride,
+INKTRACE_MULTIVERSION
+void cover(const Lanes<float>& distance, const Lanes<float>& nx, const Lanes<float>& ny, float half,
+           Lanes<float>& inks) {
+    for (int i = 0; i < kLanes; ++i) {
+        const float near = std::min(distance[i], 1e6F);
+        inks[i] = band_coverage(near, half, nx[i], ny[i]);
+    }
+}
+
+void draw_soft(const Stroke& stroke, const Reach& reach, float x0, float y0, std::size_t stride,
                float* coverage, float* t) {
-    for (int n = 0; n < rows * kLanes; ++n) {
-        const std::size_t i =
-            static_cast<std::size_t>(n / kLanes) * stride + static_cast<std::size_t>(n % kLanes);
-        const float rx = x + static_cast<float>(n % kLanes) - stroke.a.x;
-        const float ry = y + static_cast<float>(n / kLanes) - stroke.a.y;
-        const float s = std::clamp(rx * stroke.along.x + ry * stroke.along.y, 0.0F, stroke.length);
-        const float u = std::hypot(rx - s * stroke.along.x, ry - s * stroke.along.y) / stroke.half;
-        if (u >= 1.0F) continue;
-        const float ink = stroke.profile[static_cast<int>(u * kProfileEntries)] * stroke.strength;
-        t[i] = std::min(t[i], stroke.t);
-        coverage[i] = std::max(coverage[i], ink);
+    for (int row = reach.top; row <= reach.bottom; ++row) {
+        for (int column = reach.left; column <= reach.right; ++column) {
+            const float rx = x0 + static_cast<float>(column) - stroke.a.x;
+            const float ry = y0 + static_cast<float>(row) - stroke.a.y;
+            const float s =
+                std::clamp(rx * stroke.along.x + ry * stroke.along.y, 0.0F, stroke.length);
+            const float u =
+                std::hypot(rx - s * stroke.along.x, ry - s * stroke.along.y) / stroke.half;
+            if (u >= 1.0F) continue;
+            const std::size_t k =
+                static_cast<std::size_t>(row) * stride + static_cast<std::size_t>(column);
+            const float ink =
+                stroke.profile[static_cast<int>(u * kProfileEntries)] * stroke.strength;
+            t[k] = std::min(t[k], stroke.t);
+            coverage[k] = std::max(coverage[k], ink);
+        }
     }
 }
 
@@ -149,30 +202,53 @@ void InkTile::draw(const Segment& segment, std::size_t style, float width_scale)
     const auto last = [&](float a, float b, int origin, int size) {
         return std::min(static_cast<int>(std::floor(std::max(a, b) + reach)) - origin, size - 1);
     };
-    const int left = first(segment.a.x, segment.b.x, x0_);
-    const int right = last(segment.a.x, segment.b.x, x0_, width_);
-    const int top = first(segment.a.y, segment.b.y, y0_);
-    const int bottom = last(segment.a.y, segment.b.y, y0_, height_);
-    if (left > right || top > bottom) return;
+    const Reach pixels{
+        first(segment.a.x, segment.b.x, x0_), last(segment.a.x, segment.b.x, x0_, width_),
+        first(segment.a.y, segment.b.y, y0_), last(segment.a.y, segment.b.y, y0_, height_)};
+    if (pixels.left > pixels.right || pixels.top > pixels.bottom) return;
 
+    Layer& layer = layer_of(style);
+    const Stroke stroke = make_stroke(segment, width, profile_.empty() ? nullptr : profile_.data());
+    for (int y = pixels.top; y <= pixels.bottom; ++y) {
+        for (int x = pixels.left; x <= pixels.right; x += kLanes) touch(x, y);
+        touch(pixels.right, y);
+    }
+    (profile_.empty() ? draw_solid : draw_soft)(
+        stroke, pixels, static_cast<float>(x0_) + 0.5F, static_cast<float>(y0_) + 0.5F,
+        static_cast<std::size_t>(stride_), layer.coverage.data(), layer.t.data());
+}
+
+InkTile::Layer& InkTile::layer_of(std::size_t style) {
     Layer& layer = layers_[layer_of_style_[style]];
     if (!layer.used) {
         layer.coverage.assign(plane_size(), 0.0F);
-        layer.t.assign(plane_size(), std::numeric_limits<float>::infinity());
+        layer.t.assign(plane_size(), kInfinity);
         layer.used = true;
         empty_ = false;
     }
-    const Stroke stroke = make_stroke(segment, width, profile_.empty() ? nullptr : profile_.data());
-    for (int x = left; x <= right; x += kLanes) {
-        for (int y = top; y <= bottom; ++y) {
-            touch(x + kLanes - 1, y);
-            touch(x, y);
+    return layer;
+}
+
+void InkTile::draw_faces(int x, int y, const Lanes<float>& distance, const Lanes<float>& nx,
+                         const Lanes<float>& ny, const Lanes<float>& t, std::size_t style,
+                         float width) {
+    Layer& layer = layer_of(style);
+    Lanes<float> inks;
+    if (profile_.empty()) {
+        cover(distance, nx, ny, 0.5F * width, inks);
+    } else {
+        for (int i = 0; i < kLanes; ++i) {
+            const float u = distance[i] / (0.5F * width);
+            inks[i] = u < 1.0F ? profile_[static_cast<std::size_t>(u * kProfileEntries)] : 0.0F;
         }
-        const std::size_t k = index(x, top);
-        (profile_.empty() ? draw_solid : draw_soft)(
-            stroke, static_cast<float>(x0_ + x) + 0.5F, static_cast<float>(y0_ + top) + 0.5F,
-            bottom - top + 1, static_cast<std::size_t>(stride_), layer.coverage.data() + k,
-            layer.t.data() + k);
+    }
+    for (int i = 0; i < kLanes; ++i) {
+        const int column = x + i % kBlockSide;
+        const int row = y + i / kBlockSide;
+        if (inks[i] <= 0.0F || column >= width_ || row >= height_) continue;
+        const std::size_t k = touch(column, row);
+        layer.coverage[k] = std::max(layer.coverage[k], inks[i]);
+        layer.t[k] = std::min(layer.t[k], t[i] + kMeshBehind);
     }
 }
 

@@ -44,6 +44,11 @@ class InkTile {
     void draw(const Segment& segment, std::size_t style, float width_scale = 1.0F);
     /// The same in the style of its type.
     void draw(const Segment& segment) { draw(segment, static_cast<std::size_t>(segment.type)); }
+    /// Inks 4 x 4 pixels, from pixel (x, y) of the tile on, with lines between faces: what each
+    /// gets from the middle of a line at `distance` from its centre, pixels, infinite for none;
+    /// (nx, ny) is the unit normal of the line.
+    void draw_faces(int x, int y, const Lanes<float>& distance, const Lanes<float>& nx,
+                    const Lanes<float>& ny, const Lanes<float>& t, std::size_t style, float width);
     /// Lays the inks over each other, the nearer line on top at each pixel.
     void finish();
 
@@ -78,6 +83,7 @@ class InkTile {
         std::vector<float> t;  ///< of the nearest line that inks the pixel
     };
 
+    Layer& layer_of(std::size_t style);
     std::size_t run_of(int x, int y) const { return index(x, y) / kLanes; }
     void finish_alone(const Layer& layer);
     void finish_pixel(std::size_t k, std::span<const Layer* const> used);

@@ -41,30 +41,34 @@ void LinePlanes::add(const Segment& segment, float width) {
     const auto last = [&](float a, float b, int origin, int size) {
         return std::min(static_cast<int>(std::floor(std::max(a, b) + reach)) - origin, size - 1);
     };
-    const auto type = static_cast<std::uint32_t>(segment.type) + 1;
     const GeometryId far = segment.left == segment.owner ? segment.right : segment.left;
+    const Line line{segment.t, segment.type, segment.owner, far, segment.level};
     for (int y = first(segment.a.y, segment.b.y, y0_);
          y <= last(segment.a.y, segment.b.y, y0_, height_); ++y) {
         for (int x = first(segment.a.x, segment.b.x, x0_);
              x <= last(segment.a.x, segment.b.x, x0_, width_); ++x) {
             const float distance = distance_to(
                 segment, {static_cast<float>(x0_ + x) + 0.5F, static_cast<float>(y0_ + y) + 0.5F});
-            if (distance >= reach) continue;
-            const std::size_t k = index(x, y);
-            distance_[k] = std::min(distance_[k], distance);
-            // In an order of its own, so that it does not depend on that of the segments.
-            const std::uint32_t level = segment.level;
-            if (type_[k] != 0 && std::tie(t_[k], type_[k], near_id_[k], far_id_[k], level_[k]) <=
-                                     std::tie(segment.t, type, segment.owner, far, level)) {
-                continue;
-            }
-            t_[k] = segment.t;
-            type_[k] = type;
-            near_id_[k] = segment.owner;
-            far_id_[k] = far;
-            level_[k] = level;
+            add(x, y, distance, width, line);
         }
     }
+}
+
+void LinePlanes::add(int x, int y, float distance, float width, const Line& line) {
+    if (distance >= 0.5F * width + kHalfDiagonal) return;
+    const auto type = static_cast<std::uint32_t>(line.type) + 1;
+    const std::size_t k = index(x, y);
+    distance_[k] = std::min(distance_[k], distance);
+    // In an order of its own, so that it does not depend on that of the segments.
+    if (type_[k] != 0 && std::tie(t_[k], type_[k], near_id_[k], far_id_[k], level_[k]) <=
+                             std::tie(line.t, type, line.near, line.far, line.level)) {
+        return;
+    }
+    t_[k] = line.t;
+    type_[k] = type;
+    near_id_[k] = line.near;
+    far_id_[k] = line.far;
+    level_[k] = line.level;
 }
 
 }  // namespace ink

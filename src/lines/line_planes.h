@@ -18,6 +18,15 @@ class LinePlanes {
     /// Adds a line of that width, pixels.
     void add(const Segment& segment, float width);
 
+    struct Line {
+        float t;  ///< as in Segment
+        LineType type;
+        GeometryId near, far;
+        std::uint32_t level = 0;
+    };
+    /// Adds one of that width to pixel (x, y) of the rectangle, at a distance from its centre.
+    void add(int x, int y, float distance, float width, const Line& line);
+
     std::size_t index(int x, int y) const {
         return static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) +
                static_cast<std::size_t>(x);

@@ -5,10 +5,12 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <optional>
 
 #include "accel/peeled_tracer.h"
 #include "base/error.h"
 #include "base/parallel.h"
+#include "render/face_map.h"
 #include "render/hidden_lines.h"
 #include "render/line_drawer.h"
 #include "render/line_finder.h"
@@ -133,6 +135,10 @@ std::size_t Edges::search_tile_at(Vec2f point) const {
                                     tile(point.x, size.width));
 }
 
+std::size_t Edges::style_of(LineType type, std::uint32_t object) const {
+    return (styles_by_object ? object * kLineTypes : 0U) + static_cast<std::size_t>(type);
+}
+
 namespace {
 
 /// Hands out what the drawing needs of the segments of all tiles.
@@ -197,12 +203,15 @@ RenderStats render_edges(const Pipeline& pipeline, const RenderControl& control)
     WorkLoop loop(threads, control, edges.search_tiles.size() + edges.draw_tiles.size());
     const auto pool = static_cast<std::size_t>(threads);
 
+    std::optional<FaceMap> faces;
+    if (edges.wants_faces()) faces.emplace(pipeline.scene, pipeline.settings.size, edges.q);
+    FaceMap* const face_map = faces ? &*faces : nullptr;
     std::vector<std::vector<ColoredSegment>> found(edges.search_tiles.size());
     std::vector<std::vector<Segment>> hidden(edges.search_tiles.size());
     std::vector<std::unique_ptr<LineFinder>> finders(pool);
     std::vector<std::unique_ptr<HiddenLineFinder>> behind(pool);
     loop.run(edges.search_tiles.size(), [&](std::size_t i, std::size_t worker) {
-        if (!finders[worker]) finders[worker] = std::make_unique<LineFinder>(edges);
+        if (!finders[worker]) finders[worker] = std::make_unique<LineFinder>(edges, face_map);
         found[i] = finders[worker]->search(edges.search_tiles[i]);
         if (edges.behind.empty()) return;
         if (!behind[worker]) behind[worker] = std::make_unique<HiddenLineFinder>(edges);
@@ -228,8 +237,8 @@ RenderStats render_edges(const Pipeline& pipeline, const RenderControl& control)
     std::vector<std::unique_ptr<LineDrawer>> drawers(pool);
     loop.run(edges.draw_tiles.size(), [&](std::size_t i, std::size_t worker) {
         if (!drawers[worker])
-            drawers[worker] =
-                std::make_unique<LineDrawer>(edges, pipeline.goes_on() ? direct : density, density);
+            drawers[worker] = std::make_unique<LineDrawer>(
+                edges, pipeline.goes_on() ? direct : density, density, face_map);
         drawers[worker]->draw(edges.draw_tiles[i], found);
     });
 

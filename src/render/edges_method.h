@@ -31,6 +31,7 @@ struct Edges {
     std::size_t style_of(const Segment& segment) const;
     /// Index of the tile that a point was searched in.
     std::size_t search_tile_at(Vec2f point) const;
+    std::size_t style_of(LineType type, std::uint32_t object) const;
     bool wants_faces() const { return draw_lines && wanted.has(LineType::mesh); }
 
     const Pipeline& pipeline;

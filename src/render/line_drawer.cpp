@@ -17,7 +17,7 @@ void LineDrawer::draw(const Tile& tile, const std::vector<std::vector<ColoredSeg
     const Timer timer(stats_.lines_ms);
     gather(tile, found);
     if (edges_.pipeline.aovs && edges_.pipeline.aovs->wants_line_planes()) write_planes(tile);
-    if (near_.empty()) return;
+    if (near_.empty() && !face_edges_) return;
 
     ink_.begin(tile.x0, tile.y0, tile.x1 - tile.x0, tile.y1 - tile.y0);
     if (edges_.smooth_shading) {
@@ -28,21 +28,72 @@ void LineDrawer::draw(const Tile& tile, const std::vector<std::vector<ColoredSeg
         for (const ColoredSegment* line : near_) {
             if (edges_.wanted.has(line->segment.type)) ink(line->segment);
         }
+        if (face_edges_) ink_faces(tile);
         ink_.finish();
     }
     write(tile);
 }
 
 /// Below 1 where lines are dense.
-float LineDrawer::width_scale_at(const Segment& segment) const {
+float LineDrawer::width_scale_at(Vec2f point, const LineDensity& density) const {
     const auto most = static_cast<float>(edges_.pipeline.settings.line_density);
     if (most >= 1.0F) return 1.0F;
-    const LineDensity& density = segment.level == 0 ? direct_density_ : density_;
-    return width_scale(density.at((segment.a + segment.b) * 0.5F), most);
+    return width_scale(density.at(point), most);
+}
+
+float LineDrawer::width_scale_of(const Segment& segment) const {
+    return width_scale_at((segment.a + segment.b) * 0.5F,
+                          segment.level == 0 ? direct_density_ : density_);
 }
 
 void LineDrawer::ink(const Segment& segment) {
-    ink_.draw(segment, edges_.style_of(segment), width_scale_at(segment));
+    ink_.draw(segment, edges_.style_of(segment), width_scale_of(segment));
+}
+
+/// Calls `draw(x, y, nearest edges, style, width)` for each block of the tile that has lines
+/// between faces, once a style.
+template <class Draw>
+void LineDrawer::for_each_face_block(const Tile& tile, Draw draw) {
+    face_edges_->begin();
+    NearestEdges nearest;
+    for (int y = tile.y0; y < tile.y1; y += kBlockSide) {
+        for (int x = tile.x0; x < tile.x1; x += kBlockSide) {
+            if (!face_edges_->measure(x, y, edges_.ink.reach(), nearest)) continue;
+            const float scale = width_scale_at({static_cast<float>(x) + 0.5F * kBlockSide,
+                                                static_cast<float>(y) + 0.5F * kBlockSide},
+                                               direct_density_);
+            const auto draw_style = [&](std::uint32_t object, const NearestEdges& edges) {
+                const std::size_t style = edges_.style_of(LineType::mesh, object);
+                draw(x, y, edges, style, edges_.ink.styles[style].width_px * scale);
+            };
+            if (!edges_.styles_by_object) {
+                draw_style(0, nearest);
+                continue;
+            }
+            for (NearestEdges rest = nearest;;) {
+                const auto* first = std::ranges::find_if(
+                    rest.distance, [](float distance) { return distance < kInfinity; });
+                if (first == rest.distance.end()) break;
+                const auto lane = static_cast<int>(first - rest.distance.begin());
+                const std::uint32_t object = faces_->triangle(rest.triangle[lane]).object;
+                NearestEdges own = rest;
+                for (int i = 0; i < kLanes; ++i) {
+                    const bool is_own = rest.distance[i] < kInfinity &&
+                                        faces_->triangle(rest.triangle[i]).object == object;
+                    (is_own ? rest : own).distance[i] = kInfinity;
+                }
+                draw_style(object, own);
+            }
+        }
+    }
+}
+
+void LineDrawer::ink_faces(const Tile& tile) {
+    for_each_face_block(
+        tile, [&](int x, int y, const NearestEdges& edges, std::size_t style, float width) {
+            ink_.draw_faces(x - tile.x0, y - tile.y0, edges.distance, edges.nx, edges.ny, edges.t,
+                            style, width);
+        });
 }
 
 void LineDrawer::write_planes(const Tile& tile) {
@@ -51,9 +102,28 @@ void LineDrawer::write_planes(const Tile& tile) {
         const Segment& segment = line->segment;
         if (!edges_.draw_lines || !edges_.wanted.has(segment.type)) continue;
         const LineStyle& style = edges_.ink.styles[edges_.style_of(segment)];
-        planes_.add(segment, style.width_px * width_scale_at(segment));
+        planes_.add(segment, style.width_px * width_scale_of(segment));
     }
+    if (face_edges_ && edges_.draw_lines) add_face_planes(tile);
     edges_.pipeline.aovs->put_lines(tile.x0, tile.y0, tile.x1, tile.y1, planes_);
+}
+
+void LineDrawer::add_face_planes(const Tile& tile) {
+    for_each_face_block(
+        tile, [&](int x, int y, const NearestEdges& edges, std::size_t, float width) {
+            for (int i = 0; i < kLanes; ++i) {
+                const int column = x + i % kBlockSide - tile.x0;
+                const int row = y + i / kBlockSide - tile.y0;
+                if (edges.distance[i] == kInfinity || x + i % kBlockSide >= tile.x1 ||
+                    y + i / kBlockSide >= tile.y1) {
+                    continue;
+                }
+                const FaceMap::Triangle seen = faces_->triangle(edges.triangle[i]);
+                const GeometryId id = edges_.pipeline.ids.resolve(seen.object, seen.primitive);
+                planes_.add(column, row, edges.distance[i], width,
+                            {edges.t[i], LineType::mesh, id, id});
+            }
+        });
 }
 
 /// The segments that can change pixels of a tile.

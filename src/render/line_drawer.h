@@ -2,12 +2,14 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "base/lanes.h"
 #include "lines/ink.h"
 #include "lines/line_planes.h"
 #include "render/edges_method.h"
+#include "render/face_edges.h"
 #include "render/tiles.h"
 
 namespace ink {
@@ -16,8 +18,14 @@ namespace ink {
 class LineDrawer {
   public:
     /// `direct` is the density of the lines that are seen directly, `all` that of all lines found.
-    LineDrawer(const Edges& edges, const LineDensity& direct, const LineDensity& all)
-        : edges_(edges), direct_density_(direct), density_(all), ink_(edges.ink) {}
+    /// `faces` is what lines between faces are drawn from; null if there are none.
+    LineDrawer(const Edges& edges, const LineDensity& direct, const LineDensity& all,
+               const FaceMap* faces)
+        : edges_(edges), direct_density_(direct), density_(all), ink_(edges.ink) {
+        if (faces == nullptr || edges.pipeline.lines.drawing != nullptr) return;
+        face_edges_.emplace(edges.pipeline.camera.projection(), *faces);
+        faces_ = faces;
+    }
 
     void draw(const Tile& tile, const std::vector<std::vector<ColoredSegment>>& found);
 
@@ -32,13 +40,20 @@ class LineDrawer {
     void write(const Tile& tile);
 
     void ink(const Segment& segment);
-    float width_scale_at(const Segment& segment) const;
+    float width_scale_at(Vec2f point, const LineDensity& density) const;
+    float width_scale_of(const Segment& segment) const;
+    template <class Draw>
+    void for_each_face_block(const Tile& tile, Draw draw);
+    void ink_faces(const Tile& tile);
     void write_planes(const Tile& tile);
+    void add_face_planes(const Tile& tile);
 
     const Edges& edges_;
     const LineDensity& direct_density_;
     const LineDensity& density_;
     InkTile ink_;
+    const FaceMap* faces_ = nullptr;
+    std::optional<FaceEdges> face_edges_;
     LinePlanes planes_;
     std::vector<const ColoredSegment*> near_;  ///< segments within reach of the tile
     /// What smoothing adds to each pixel's colour: linear, premultiplied R, G, B, A. In fixed

@@ -1,6 +1,8 @@
 #include "render/line_finder.h"
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 
 #include "base/multiversion.h"
 
@@ -194,12 +196,12 @@ std::array<float, 4> LineFinder::color_at(int i, int j) const {
 std::vector<ColoredSegment> LineFinder::find_lines() {
     const Timer timer(stats_.lines_ms);
     if (!edges_.find_lines && !edges_.smooth_shading) return {};
-    if (wants_faces()) fill_faces();
     detect(grid_, edges_.detect, suspects_);
-    sort_out_suspects();
-    locator_.locate(grid_, std::span(suspects_).first(located_), describe_, sample_, crossings_);
-    if (wants_faces()) cross_faces();
+    std::erase_if(suspects_, [this](const SuspectEdge& edge) { return is_smooth(edge); });
+    locator_.locate(grid_, suspects_, describe_, sample_, crossings_);
+    if (faces_ != nullptr) cross_faces();
     connector_.connect(grid_, suspects_, crossings_, segments_);
+    if (faces_ != nullptr) drop_unmarked_faces();
     stats_.crossings += crossings_.size();
 
     std::vector<ColoredSegment> found;
@@ -217,7 +219,11 @@ void LineFinder::keep(std::vector<ColoredSegment>& found) {
             return color_at(static_cast<int>(index % width), static_cast<int>(index / width));
         };
         found.push_back({segment, color(segment.left_sample), color(segment.right_sample)});
-        if (front_ && edges_.draw_lines && edges_.wanted.has(segment.type)) count(segment);
+        // Those between faces are counted by add_face_density.
+        if (front_ && edges_.draw_lines && edges_.wanted.has(segment.type) &&
+            segment.type != LineType::mesh) {
+            count(segment);
+        }
     }
 }
 
@@ -249,7 +255,7 @@ void LineFinder::add_ridges(const Tile& tile, std::vector<ColoredSegment>& found
 
 /// Whether the scene rules out a line that the samples alone let suspect.
 bool LineFinder::is_smooth(const SuspectEdge& edge) const {
-    if (edge.suspicion == Suspicion::id || edge.suspicion == Suspicion::face) return false;
+    if (edge.suspicion == Suspicion::id) return false;
     const LatticeHit a = hit_at(edge.i, edge.j);
     const LatticeHit b = edge.down ? hit_at(edge.i, edge.j + 1) : hit_at(edge.i + 1, edge.j);
     return edges_.surfaces.smooth_between(*a.hits, a.lane, *b.hits, b.lane);
@@ -269,60 +275,140 @@ void LineFinder::describe(std::size_t point, Sample& sample) const {
     if (!front_) sample.ball = {};  // its outline and seams may lie on another layer
 }
 
-void LineFinder::fill_faces() {
-    grid_.face.assign(grid_.id.size(), 0);
-    Lanes<std::uint32_t> faces;
+/// Keeps what pixel centres, or the lattice points next to them, see.
+void LineFinder::map_faces(const Tile& tile) {
+    const Timer timer(stats_.lines_ms);
+    const int q = edges_.q;
     for (std::size_t k = 0; k < blocks_.size(); ++k) {
-        edges_.surfaces.faces(hits_[k], faces);
-        const int i0 = blocks_[k].x - grid_.x0;
-        const int j0 = blocks_[k].y - grid_.y0;
-        for (int j = 0; j < blocks_[k].rows; ++j) {
-            std::copy_n(faces.data() + j * kBlockSide, blocks_[k].columns,
-                        grid_.face.data() + grid_.index(i0, j0 + j));
+        if (q == 1) faces_->put(blocks_[k].x, blocks_[k].y, hits_[k]);
+        add_face_density(k);
+    }
+    if (q == 1) return;
+    for (int y = tile.y0; y < tile.y1; ++y) {
+        for (int x = tile.x0; x < tile.x1; ++x) {
+            const int i = x * q + q / 2 - grid_.x0;
+            const int j = y * q + q / 2 - grid_.y0;
+            if (block_index(i / kBlockSide, j / kBlockSide) == kEmptyBlock) continue;
+            const LatticeHit hit = hit_at(i, j);
+            faces_->put(x, y, *hit.hits, hit.lane);
         }
     }
 }
 
-/// Drops the suspects that the scene rules out, and puts those between two faces last: they need no
-/// samples.
-void LineFinder::sort_out_suspects() {
-    for (SuspectEdge& edge : suspects_) {
-        if (is_smooth(edge)) edge.suspicion = Suspicion::face;
+/// How long the lines between faces are in a block, from how often its points see different ones:
+/// a line of any direction crosses lattice edges 4 / pi times a spacing, on average.
+void LineFinder::add_face_density(std::size_t block) {
+    const Block& place = blocks_[block];
+    if (place.columns < kBlockSide || place.rows < kBlockSide) return;  // another tile has it
+    const HitPacket& hits = hits_[block];
+    int changes = 0;
+    const auto compare = [&](int a, int b) {
+        const bool one_object = hits.object[a] == hits.object[b] && hits.object[a] != kNoObject;
+        changes += one_object && hits.primitive[a] != hits.primitive[b] ? 1 : 0;
+    };
+    for (int j = 0; j < kBlockSide; ++j) {
+        for (int i = 0; i + 1 < kBlockSide; ++i) {
+            compare(j * kBlockSide + i, j * kBlockSide + i + 1);
+            compare(i * kBlockSide + j, (i + 1) * kBlockSide + j);
+        }
     }
-    const auto others = std::ranges::stable_partition(
-        suspects_, [](const SuspectEdge& edge) { return edge.suspicion != Suspicion::face; });
-    located_ = static_cast<std::size_t>(others.begin() - suspects_.begin());
-    if (!wants_faces()) suspects_.resize(located_);
+    if (changes == 0) return;
+    const std::uint32_t object =
+        *std::ranges::find_if(hits.object, [](std::uint32_t o) { return o != kNoObject; });
+    if (!edges_.surfaces.is_mesh(object)) return;
+    // Of the 32 edges that hang on the block's points, 24 were compared.
+    constexpr float kLength = std::numbers::pi_v<float> / 4.0F * 32.0F / 24.0F;
+    const Vec2f middle = {static_cast<float>(place.x) + 0.5F * kBlockSide,
+                          static_cast<float>(place.y) + 0.5F * kBlockSide};
+    const float length = static_cast<float>(changes) * kLength * grid_.spacing;
+    const float width = edges_.ink.styles[edges_.style_of(LineType::mesh, object)].width_px;
+    density_.add(middle * grid_.spacing, length, width);
+    if (specular_) direct_density_.add(middle * grid_.spacing, length, width);
 }
 
-/// Adds the lines between faces of a mesh where there is no other line.
+/// Lines between the faces of meshes, in the cells through which other lines run: as crossings of
+/// those edges of the lattice that have none yet. Beside a crease they are not searched for: there
+/// they are as visible as it is.
 void LineFinder::cross_faces() {
-    constexpr GeometryId kFaceNumber = 0x80000000U;  // so that it equals no ID
-    crossed_.assign(suspects_.size(), 0);
-    for (const Crossing& crossing : crossings_) crossed_[crossing.edge] = 1;
-    for (std::uint32_t k = 0; k < suspects_.size(); ++k) {
-        const SuspectEdge& edge = suspects_[k];
-        const int i = edge.i + (edge.down ? 0 : 1);
-        const int j = edge.j + (edge.down ? 1 : 0);
-        const std::size_t first = grid_.index(edge.i, edge.j);
-        const std::size_t second = grid_.index(i, j);
-        if (crossed_[k] != 0 || grid_.face[first] == grid_.face[second]) continue;
-        const LatticeHit a = hit_at(edge.i, edge.j);
-        const LatticeHit b = hit_at(i, j);
-        const Vec2f from = grid_.point(edge.i, edge.j);
-        const Vec2f to = grid_.point(i, j);
-        const float at = edges_.surfaces.face_crossing(edges_.viewpoint, from, *a.hits, a.lane, to,
-                                                       *b.hits, b.lane);
-        Crossing crossing;
-        crossing.point = from + (to - from) * at;
-        crossing.type = LineType::mesh;
-        crossing.t = grid_.t[first] + at * (grid_.t[second] - grid_.t[first]);
-        crossing.edge = k;
-        crossing.first = kFaceNumber | grid_.face[first];
-        crossing.second = kFaceNumber | grid_.face[second];
-        crossing.nearer = grid_.id[first];
-        crossings_.push_back(crossing);
+    marks_.assign(grid_.id.size(), 0);
+    marked_.clear();
+    for (const Crossing& crossing : crossings_) {
+        const SuspectEdge& edge = suspects_[crossing.edge];
+        marks_[grid_.index(edge.i, edge.j)] |= edge.down ? kCrossedDown : kCrossedRight;
     }
+    if (edges_.pipeline.lines.drawing != nullptr) {
+        // Who asks for the lines as data wants them to go on from cell to cell.
+        for (int j = 0; j + 1 < grid_.height; ++j) {
+            for (int i = 0; i + 1 < grid_.width; ++i) mark(i, j);
+        }
+    }
+    for (const Crossing& crossing : crossings_) {
+        const SuspectEdge& edge = suspects_[crossing.edge];
+        if (crossing.type == LineType::crease) continue;
+        mark(edge.i, edge.j);
+        mark(edge.i - (edge.down ? 1 : 0), edge.j - (edge.down ? 0 : 1));
+    }
+    for (const auto [i, j] : marked_) {
+        cross_faces(i, j, false);
+        cross_faces(i, j + 1, false);
+        cross_faces(i, j, true);
+        cross_faces(i + 1, j, true);
+    }
+}
+
+/// Marks a cell of the grid, if it is one.
+void LineFinder::mark(int i, int j) {
+    if (i < 0 || j < 0 || i + 1 >= grid_.width || j + 1 >= grid_.height || marked(i, j)) return;
+    marks_[grid_.index(i, j)] |= kMarked;
+    marked_.push_back({i, j});
+    faces_->mark(grid_.x0 + i, grid_.y0 + j);
+}
+
+bool LineFinder::marked(int i, int j) const { return (marks_[grid_.index(i, j)] & kMarked) != 0; }
+
+/// The same for one edge of the lattice.
+void LineFinder::cross_faces(int i, int j, bool down) {
+    constexpr GeometryId kFaceNumber = 0x80000000U;  // so that it equals no ID
+    const int i_b = i + (down ? 0 : 1);
+    const int j_b = j + (down ? 1 : 0);
+    const std::size_t first = grid_.index(i, j);
+    std::uint8_t& marks = marks_[first];
+    const std::uint8_t crossed = down ? kCrossedDown : kCrossedRight;
+    if ((marks & crossed) != 0) return;
+    marks |= crossed;
+    const std::size_t second = grid_.index(i_b, j_b);
+    if (grid_.id[first] == kBackground || grid_.id[first] != grid_.id[second]) return;
+    const LatticeHit a = hit_at(i, j);
+    const LatticeHit b = hit_at(i_b, j_b);
+    const std::uint32_t face_a = edges_.surfaces.face(*a.hits, a.lane);
+    const std::uint32_t face_b = edges_.surfaces.face(*b.hits, b.lane);
+    if (face_a == face_b) return;
+    const Vec2f from = grid_.point(i, j);
+    const Vec2f to = grid_.point(i_b, j_b);
+    const float at =
+        edges_.surfaces.face_crossing(edges_.viewpoint, from, *a.hits, a.lane, to, *b.hits, b.lane);
+    Crossing crossing;
+    crossing.point = from + (to - from) * at;
+    crossing.type = LineType::mesh;
+    crossing.t = grid_.t[first] + at * (grid_.t[second] - grid_.t[first]);
+    crossing.edge = static_cast<std::uint32_t>(suspects_.size());
+    crossing.first = kFaceNumber | face_a;
+    crossing.second = kFaceNumber | face_b;
+    crossing.nearer = grid_.id[first];
+    crossings_.push_back(crossing);
+    suspects_.push_back(
+        {static_cast<std::uint16_t>(i), static_cast<std::uint16_t>(j), down, Suspicion::none});
+}
+
+/// Elsewhere they are drawn without being found (FaceEdges).
+void LineFinder::drop_unmarked_faces() {
+    std::erase_if(segments_, [this](const Segment& segment) {
+        if (segment.type != LineType::mesh) return false;
+        const Vec2f middle = (segment.a + segment.b) * (0.5F / grid_.spacing);
+        const int i = static_cast<int>(std::floor(middle.x - 0.5F)) - grid_.x0;
+        const int j = static_cast<int>(std::floor(middle.y - 0.5F)) - grid_.y0;
+        return !marked(std::clamp(i, 0, grid_.width - 2), std::clamp(j, 0, grid_.height - 2));
+    });
 }
 
 /// More samples, for the bisection.

@@ -11,6 +11,7 @@
 #include "lines/locate.h"
 #include "lines/segment.h"
 #include "render/edges_method.h"
+#include "render/face_map.h"
 #include "render/ridge_search.h"
 #include "render/specular_search.h"
 #include "render/tiles.h"
@@ -24,14 +25,18 @@ namespace ink {
 /// near the scene.
 class LineFinder {
   public:
-    explicit LineFinder(const Edges& edges) : LineFinder(edges, *edges.pipeline.frame, true) {}
+    /// `faces`: where to put what lines between faces are drawn from; null if there are none.
+    LineFinder(const Edges& edges, FaceMap* faces)
+        : LineFinder(edges, *edges.pipeline.frame, true, faces) {}
 
     /// On other surfaces than the nearest ones: what lies behind them is not shaded.
-    LineFinder(const Edges& edges, const FrameTracer& behind) : LineFinder(edges, behind, false) {}
+    LineFinder(const Edges& edges, const FrameTracer& behind)
+        : LineFinder(edges, behind, false, nullptr) {}
 
     /// Design: trace the lattice, detect, locate, connect. Shades the tile's pixels on the way.
     std::vector<ColoredSegment> search(const Tile& tile) {
         trace_lattice(tile);
+        if (faces_ != nullptr) map_faces(tile);
         if (front_) shade(tile);
         std::vector<ColoredSegment> found = find_lines();
         if (specular_) add_specular(found);
@@ -62,9 +67,10 @@ class LineFinder {
     }
 
   private:
-    LineFinder(const Edges& edges, const FrameTracer& frame, bool front)
+    LineFinder(const Edges& edges, const FrameTracer& frame, bool front, FaceMap* faces)
         : edges_(edges),
           front_(front),
+          faces_(faces),
           sampler_(frame, edges.pipeline.camera, edges.q),
           pixel_sampler_(frame, edges.pipeline.camera),
           locator_(edges.viewpoint, edges.locate),
@@ -80,7 +86,6 @@ class LineFinder {
         if (front && edges.pipeline.goes_on()) specular_.emplace(edges);
     }
 
-    bool wants_faces() const { return front_ && edges_.wants_faces(); }
     void trace_lattice(const Tile& tile);
     void fill_grid(std::size_t block);
     void shade(const Tile& tile);
@@ -99,17 +104,23 @@ class LineFinder {
     LatticeHit hit_at(int i, int j) const;
     bool is_smooth(const SuspectEdge& edge) const;
     void describe(std::size_t point, Sample& sample) const;
-    void fill_faces();
-    void sort_out_suspects();
+    void map_faces(const Tile& tile);
+    void add_face_density(std::size_t block);
     void cross_faces();
+    void cross_faces(int i, int j, bool down);
+    void drop_unmarked_faces();
+    void mark(int i, int j);
+    bool marked(int i, int j) const;
     std::uint32_t block_index(int i, int j) const;
     std::array<float, 4> color_at(int i, int j) const;
 
     static constexpr std::uint32_t kEmptyBlock = 0xFFFFFFFFU;
+    static constexpr std::uint8_t kCrossedRight = 1, kCrossedDown = 2, kMarked = 4;
 
     const Edges& edges_;
     bool front_;
     bool saw_anything_ = false;
+    FaceMap* faces_;
     Sampler sampler_;
     Sampler pixel_sampler_;
     Locator locator_;
@@ -128,9 +139,14 @@ class LineFinder {
     std::vector<std::uint8_t> seen_;
     std::vector<HitPacket> point_hits_;
     std::vector<SuspectEdge> suspects_;
-    std::size_t located_ = 0;  ///< the first so many suspects are the locator's
     std::vector<Crossing> crossings_;
-    std::vector<std::uint8_t> crossed_;  ///< a suspect: whether it has a crossing
+    /// A point of the grid: kCrossedRight, kCrossedDown if its edge in that direction has a
+    /// crossing; kMarked if lines between faces are searched for in its cell.
+    std::vector<std::uint8_t> marks_;
+    struct Cell {
+        int i, j;
+    };
+    std::vector<Cell> marked_;
     std::vector<Segment> segments_;
     LineDensity density_, direct_density_;
     RenderStats stats_;

@@ -76,9 +76,6 @@ struct SampleGrid {
     std::vector<float> px, py, pz;  ///< position
     std::vector<float> nx, ny, nz;  ///< normal
     std::vector<float> t;
-    /// Of the mesh that was hit, its face; 0 elsewhere. Empty unless lines between faces are
-    /// wanted.
-    std::vector<std::uint32_t> face;
 
     void resize(int new_width, int new_height) {
         width = new_width;

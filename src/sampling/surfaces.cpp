@@ -75,14 +75,15 @@ void Surfaces::describe(const HitPacket& hits, int lane, Sample& sample) const {
     }
 }
 
-void Surfaces::faces(const HitPacket& hits, Lanes<std::uint32_t>& faces) const {
-    for (int i = 0; i < kLanes; ++i) {
-        faces[i] = 0;
-        if (hits.object[i] == kNoObject) continue;
-        const auto* mesh = std::get_if<Mesh>(&scene_.objects()[hits.object[i]].shape);
-        if (mesh == nullptr) continue;
-        faces[i] = mesh->faces.empty() ? hits.primitive[i] : mesh->faces[hits.primitive[i]];
-    }
+bool Surfaces::is_mesh(std::uint32_t object) const {
+    return std::holds_alternative<Mesh>(scene_.objects()[object].shape);
+}
+
+std::uint32_t Surfaces::face(const HitPacket& hits, int lane) const {
+    if (hits.object[lane] == kNoObject) return 0;
+    const auto* mesh = std::get_if<Mesh>(&scene_.objects()[hits.object[lane]].shape);
+    if (mesh == nullptr) return 0;
+    return mesh->faces.empty() ? hits.primitive[lane] : mesh->faces[hits.primitive[lane]];
 }
 
 float Surfaces::face_crossing(const Viewpoint& viewpoint, Vec2f a, const HitPacket& hits_a,

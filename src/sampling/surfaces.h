@@ -17,8 +17,10 @@ class Surfaces {
     /// Adds the sphere or the open edge that a hit lies on.
     void describe(const HitPacket& hits, int lane, Sample& sample) const;
 
-    /// Faces of the meshes that were hit; 0 elsewhere.
-    void faces(const HitPacket& hits, Lanes<std::uint32_t>& faces) const;
+    bool is_mesh(std::uint32_t object) const;
+
+    /// Of the mesh that was hit, its face; 0 elsewhere.
+    std::uint32_t face(const HitPacket& hits, int lane) const;
 
     /// Where the line between the faces of two hits on one mesh crosses the way from screen point a
     /// to b, in [0, 1]: where the way leaves the first triangle and enters the second by edges that

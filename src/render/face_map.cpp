@@ -1,0 +1,114 @@
+#include "render/face_map.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <variant>
+
+namespace ink {
+
+namespace {
+
+/// A row of a block. A size known to the compiler makes it one move.
+template <class T>
+void copy_row(const T* from, int count, T* to) {
+    if (count == kBlockSide) {
+        std::copy_n(from, kBlockSide, to);
+    } else {
+        std::copy_n(from, count, to);
+    }
+}
+
+}  // namespace
+
+FaceMap::FaceMap(const Scene& scene, Size size, int lattice)
+    : size_(size),
+      lattice_(lattice),
+      blocks_across_((size.width + kBlockSide - 1) / kBlockSide),
+      blocks_down_((size.height + kBlockSide - 1) / kBlockSide),
+      triangles_(size.pixels()),
+      cells_(size.pixels() * static_cast<std::size_t>(lattice) * static_cast<std::size_t>(lattice)),
+      blocks_(static_cast<std::size_t>(blocks_across_) * static_cast<std::size_t>(blocks_down_)) {
+    std::ranges::fill(triangles_, kNone);
+    std::uint32_t triangles = 0;
+    for (const Object& object : scene.objects()) {
+        meshes_.push_back(std::get_if<Mesh>(&object.shape));
+        first_.push_back(triangles);
+        if (meshes_.back() != nullptr) {
+            triangles += static_cast<std::uint32_t>(meshes_.back()->triangles.size());
+        }
+    }
+}
+
+FaceMap::Triangle FaceMap::triangle(std::uint32_t number) const {
+    const auto after = std::ranges::upper_bound(first_, number);
+    const auto object = static_cast<std::uint32_t>(after - first_.begin()) - 1;
+    return {object, number - first_[object]};
+}
+
+void FaceMap::put(int x, int y, const HitPacket& hits) {
+    if (x < 0 || y < 0) return;
+    const int columns = std::min(kBlockSide, size_.width - x);
+    const int rows = std::min(kBlockSide, size_.height - y);
+    if (columns <= 0) return;
+    Lanes<std::uint32_t> numbers;
+    for (int i = 0; i < kLanes; ++i) numbers[i] = number(hits, i);
+    for (int row = 0; row < rows; ++row) {
+        const auto first = static_cast<std::size_t>(row * kBlockSide);
+        copy_row(numbers.data() + first, columns, triangles_.data() + pixel(x, y + row));
+    }
+}
+
+void FaceMap::put(int x, int y, const HitPacket& hits, int lane) {
+    if (x < 0 || y < 0 || x >= size_.width || y >= size_.height) return;
+    triangles_[pixel(x, y)] = number(hits, lane);
+}
+
+void FaceMap::mark(int i, int j) {
+    if (i < 0 || j < 0 || i >= size_.width * lattice_ || j >= size_.height * lattice_) return;
+    cells_[static_cast<std::size_t>(j) * static_cast<std::size_t>(size_.width * lattice_) +
+           static_cast<std::size_t>(i)] = 1;
+    const int side = kBlockSide * lattice_;
+    blocks_[static_cast<std::size_t>(j / side * blocks_across_ + i / side)] = 1;
+}
+
+bool FaceMap::marked(Vec2f at) const {
+    const auto q = static_cast<float>(lattice_);
+    const int i = static_cast<int>(std::floor(at.x * q - 0.5F));
+    const int j = static_cast<int>(std::floor(at.y * q - 0.5F));
+    if (i < 0 || j < 0 || i >= size_.width * lattice_ || j >= size_.height * lattice_) return false;
+    return cells_[static_cast<std::size_t>(j) * static_cast<std::size_t>(size_.width * lattice_) +
+                  static_cast<std::size_t>(i)] != 0;
+}
+
+bool FaceMap::any_marked(int x, int y, float reach) const {
+    // A cell begins half a lattice spacing after its block.
+    const int blocks = (static_cast<int>(reach) + 1 + kBlockSide) / kBlockSide;
+    const int left = std::max(x / kBlockSide - blocks, 0);
+    const int right = std::min(x / kBlockSide + blocks, blocks_across_ - 1);
+    const int top = std::max(y / kBlockSide - blocks, 0);
+    const int bottom = std::min(y / kBlockSide + blocks, blocks_down_ - 1);
+    for (int row = top; row <= bottom; ++row) {
+        const std::uint8_t* first =
+            blocks_.data() + static_cast<std::ptrdiff_t>(row) * blocks_across_ + left;
+        if (std::memchr(first, 1, static_cast<std::size_t>(right - left + 1)) != nullptr) {
+            return true;
+        }
+    }
+    return false;
+}
+
+bool FaceMap::get(int x, int y, Lanes<std::uint32_t>& triangles) const {
+    triangles.fill(kNone);
+    const int columns = std::min(kBlockSide, size_.width - x);
+    const int rows = std::min(kBlockSide, size_.height - y);
+    for (int row = 0; row < rows; ++row) {
+        copy_row(triangles_.data() + pixel(x, y + row), columns,
+                 triangles.data() + static_cast<std::size_t>(row * kBlockSide));
+    }
+    std::uint32_t all = kNone;
+    for (int i = 0; i < kLanes; ++i) all &= triangles[i];
+    return all != kNone;
+}
+
+}  // namespace ink
