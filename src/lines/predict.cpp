@@ -7,8 +7,12 @@ namespace ink {
 
 namespace {
 
+/// Not of unit length: what is asked of a ray mostly does not depend on it, and roots cost more
+/// than all the rest.
 struct Ray {
-    Vec3d origin, direction;  ///< unit
+    Vec3d origin, direction;
+
+    double length() const { return std::sqrt(dot(direction, direction)); }
 };
 
 /// The rays through the points of a lattice edge, s in [0, 1] along it. Double precision: the
@@ -22,11 +26,12 @@ class EdgeRays {
           direction_step_(viewpoint.direction(b) - direction_) {}
 
     Ray at(double s) const {
-        return {origin_ + origin_step_ * s, normalize(direction_ + direction_step_ * s)};
+        return {origin_ + origin_step_ * s, direction_ + direction_step_ * s};
     }
-    /// Length of the edge on a surface across the rays at distance t, squared.
-    double squared_length(double t) const {
-        const Vec3d step = origin_step_ + direction_step_ * (t / length(direction_));
+    /// Length of the edge on a surface across the rays at distance t, squared; `length` is that of
+    /// the first ray.
+    double squared_length(double t, double length) const {
+        const Vec3d step = origin_step_ + direction_step_ * (t / length);
         return dot(step, step);
     }
 
@@ -34,12 +39,27 @@ class EdgeRays {
     Vec3d origin_, origin_step_, direction_, direction_step_;
 };
 
-/// How a ray passes a sphere.
+/// How a ray passes a sphere. L is the length of the ray's direction.
 struct Passage {
-    double nearest;  ///< distance along the ray to the point nearest to the centre
-    double inside;   ///< radius squared less the distance squared there: negative on a miss
+    double nearest;  ///< distance along the ray to the point nearest to the centre, times L
+    double inside;   ///< radius squared less the distance squared there, times L^2: < 0 on a miss
 
+    /// Distance to where it enters, times L.
     double entry() const { return nearest - std::sqrt(std::max(inside, 0.0)); }
+};
+
+/// Where a parabola with these values at 0, 1/2 and 1 is zero; NaN where it is not.
+struct ParabolaRoots {
+    double first, second;
+
+    ParabolaRoots(double at_0, double middle, double at_1) {
+        const double b = 4.0 * middle - 3.0 * at_0 - at_1;
+        const double a = at_1 - at_0 - b;
+        // Without cancellation.
+        const double q = -0.5 * (b + std::copysign(std::sqrt(b * b - 4.0 * a * at_0), b));
+        first = q != 0.0 ? at_0 / q : 0.0;
+        second = a != 0.0 ? q / a : first;
+    }
 };
 
 struct BallOnEdge {
@@ -50,34 +70,27 @@ struct BallOnEdge {
 
     Passage at(const Ray& ray) const {
         const Vec3d to_centre = centre - ray.origin;
-        const double along = dot(to_centre, ray.direction);
-        const Vec3d across = to_centre - ray.direction * along;
-        return {along, radius * radius - dot(across, across)};
+        const Vec3d across = cross(to_centre, ray.direction);
+        return {dot(to_centre, ray.direction),
+                radius * radius * dot(ray.direction, ray.direction) - dot(across, across)};
     }
 
-    /// Whether it is the ball's outer side that a sample on this ray saw.
-    bool shows(const Passage& passage, const Sample& sample) const {
+    /// Whether it is the ball's outer side that a sample on this ray, of that length, saw.
+    bool shows(const Passage& passage, const Sample& sample, double length) const {
         constexpr double kRounding = 1e-3;  // of the radius
-        return passage.inside > 0.0 && sample.t < passage.nearest + kRounding * radius;
+        return passage.inside > 0.0 &&
+               sample.t * length < passage.nearest + kRounding * radius * length;
     }
 
     /// Where `inside` passes through zero, given its values of different sign at 0 and 1. Over a
     /// lattice edge it is a parabola, but for the fan of the rays, which bends it by less than a
     /// millionth.
     double limb(const EdgeRays& rays, double at_0, double at_1) const {
-        const double middle = at(rays.at(0.5)).inside;
-        const double b = 4.0 * middle - 3.0 * at_0 - at_1;
-        const double a = at_1 - at_0 - b;
-        const double root = std::sqrt(std::max(b * b - 4.0 * a * at_0, 0.0));
-        // The one of the two roots that lies in the interval, without cancellation.
-        const double q = -0.5 * (b + std::copysign(root, b));
-        const double first = q != 0.0 ? at_0 / q : 0.0;
-        const double second = a != 0.0 ? q / a : first;
-        const double s = std::abs(first - 0.5) <= std::abs(second - 0.5) ? first : second;
-        return std::clamp(s, 0.0, 1.0);
+        const ParabolaRoots roots(at_0, at(rays.at(0.5)).inside, at_1);
+        const bool is_first = !(std::abs(roots.first - 0.5) > std::abs(roots.second - 0.5));
+        return std::clamp(is_first ? roots.first : roots.second, 0.0, 1.0);
     }
 };
-
 /// Zero of the difference of two depths between `low`, where it is `at_low` < 0, and `high`: false
 /// position with the Illinois rule (Dowell and Jarratt 1971).
 double find_seam(const EdgeRays& rays, const BallOnEdge& a, const BallOnEdge& b, double low,
@@ -104,6 +117,31 @@ double find_seam(const EdgeRays& rays, const BallOnEdge& a, const BallOnEdge& b,
     return s;
 }
 
+/// Where two balls meet, both of which the rays enter from `begin` to `end`: there the difference
+/// of their depths passes from below zero, `before`, to above, `after`.
+double seam(const EdgeRays& rays, const BallOnEdge& a, const BallOnEdge& b, double begin,
+            double before, double end, double after) {
+    // They meet in the plane normal . (x - centre of a) = height. Zero where the ray meets the
+    // plane on the sphere; like `inside` a parabola over the edge.
+    const Vec3d normal = b.centre - a.centre;
+    const double height = 0.5 * (dot(normal, normal) + a.radius * a.radius - b.radius * b.radius);
+    const auto off_sphere = [&](double way) {
+        const Ray ray = rays.at(begin + way * (end - begin));
+        const Vec3d from_centre = ray.origin - a.centre;
+        const double fall = dot(normal, ray.direction);
+        const Vec3d at_plane =
+            from_centre * fall + ray.direction * (height - dot(normal, from_centre));
+        return dot(at_plane, at_plane) - a.radius * a.radius * fall * fall;
+    };
+    const ParabolaRoots roots(off_sphere(0.0), off_sphere(0.5), off_sphere(1.0));
+    const auto within = [](double root) { return root >= 0.0 && root <= 1.0; };
+    // Where both are, one of them is where the rays leave the spheres.
+    if (within(roots.first) == within(roots.second)) {
+        return find_seam(rays, a, b, begin, before, end, after);
+    }
+    return begin + (end - begin) * (within(roots.first) ? roots.first : roots.second);
+}
+
 }  // namespace
 
 std::optional<Prediction> predict_crossing(const Viewpoint& viewpoint, Vec2f a, const Sample& at_a,
@@ -115,54 +153,65 @@ std::optional<Prediction> predict_crossing(const Viewpoint& viewpoint, Vec2f a, 
     const EdgeRays rays(viewpoint, a, b);
     const BallOnEdge ball_a(at_a.ball);
     const BallOnEdge ball_b(at_b.ball);
+    const Ray ray_0 = rays.at(0.0);
+    const Ray ray_1 = rays.at(1.0);
+    const double length_0 = ray_0.length();
+    const double length_1 = ray_1.length();
     const auto found = [&](Kind kind, double at, double t) {
         const double smaller = !second  ? ball_a.radius
                                : !first ? ball_b.radius
                                         : std::min(ball_a.radius, ball_b.radius);
-        const double squared_radius = smaller * smaller / rays.squared_length(t);
+        const double squared_radius = smaller * smaller / rays.squared_length(t, length_0);
         return Prediction{kind, static_cast<float>(at), static_cast<float>(t),
                           static_cast<float>(squared_radius)};
     };
 
     // Whether each surface is there at both ends, and where it ends if not.
-    const Ray ray_0 = rays.at(0.0);
-    const Ray ray_1 = rays.at(1.0);
     const Passage a_0 = first ? ball_a.at(ray_0) : Passage{};
     const Passage a_1 = first ? ball_a.at(ray_1) : Passage{};
     const Passage b_0 = second ? ball_b.at(ray_0) : Passage{};
     const Passage b_1 = second ? ball_b.at(ray_1) : Passage{};
-    if ((first && !ball_a.shows(a_0, at_a)) || (second && !ball_b.shows(b_1, at_b))) return {};
+    if ((first && !ball_a.shows(a_0, at_a, length_0)) ||
+        (second && !ball_b.shows(b_1, at_b, length_1))) {
+        return {};
+    }
     const bool a_ends = first && a_1.inside <= 0.0;
     const bool b_begins = second && b_0.inside <= 0.0;
     if ((!second && !a_ends) || (!first && !b_begins)) return {};
     const double end = a_ends ? ball_a.limb(rays, a_0.inside, a_1.inside) : 1.0;
     const double begin = b_begins ? ball_b.limb(rays, b_0.inside, b_1.inside) : 0.0;
     // Along an edge of a pixel the nearest point of a passing ray hardly moves in depth.
-    const auto limb_t = [](double s, const Passage& at_0, const Passage& at_1) {
-        return at_0.nearest + s * (at_1.nearest - at_0.nearest);
+    const auto limb_t = [&](double s, const Passage& at_0, const Passage& at_1) {
+        const double t_0 = at_0.nearest / length_0;
+        return t_0 + s * (at_1.nearest / length_1 - t_0);
+    };
+    const auto entry = [&](const BallOnEdge& ball, double s) {
+        const Ray ray = rays.at(s);
+        return ball.at(ray).entry() / ray.length();
     };
 
     if (!second) return found(Kind::first_limb, end, limb_t(end, a_0, a_1));
     if (!first) return found(Kind::second_limb, begin, limb_t(begin, b_0, b_1));
     if (end < begin) {
-        return found(Kind::gap, 0.5 * (end + begin), std::min(a_0.nearest, b_1.nearest));
+        return found(Kind::gap, 0.5 * (end + begin),
+                     std::min(a_0.nearest / length_0, b_1.nearest / length_1));
     }
 
     double before = a_0.entry() - b_0.entry();  // negative while the first is in front
     if (b_begins) {
         const double t = limb_t(begin, b_0, b_1);
-        before = ball_a.at(rays.at(begin)).entry() - t;
+        before = entry(ball_a, begin) - t;
         if (before >= 0.0) return found(Kind::second_limb, begin, t);
     }
     double after = a_1.entry() - b_1.entry();
     if (a_ends) {
         const double t = limb_t(end, a_0, a_1);
-        after = t - ball_b.at(rays.at(end)).entry();
+        after = t - entry(ball_b, end);
         if (after <= 0.0) return found(Kind::first_limb, end, t);
     }
     if (before >= 0.0 || after <= 0.0) return {};
-    const double seam = find_seam(rays, ball_a, ball_b, begin, before, end, after);
-    return found(Kind::seam, seam, ball_a.at(rays.at(seam)).entry());
+    const double at = seam(rays, ball_a, ball_b, begin, before, end, after);
+    return found(Kind::seam, at, entry(ball_a, at));
 }
 
 float seam_angle(const Viewpoint& viewpoint, Vec2f point, float t, const Ball& a, const Ball& b) {
