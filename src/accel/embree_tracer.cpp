@@ -387,7 +387,11 @@ class EmbreeTracer final : public Tracer {
         return args;
     }
 #else
-    static RTCIntersectContext any_hit_arguments() { return arguments(Coherence::incoherent); }
+    static RTCIntersectContext any_hit_arguments() {
+        RTCIntersectContext context;
+        rtcInitIntersectContext(&context);
+        return context;
+    }
 #endif
 
     template <class Rays, int Width, class Kernel>

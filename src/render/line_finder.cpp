@@ -129,7 +129,7 @@ void LineFinder::shade(const Tile& tile) {
         seen_[k] = pipeline.shader.shade(surface, colors_[k]) ? 1 : 0;
     }
     if (specular_) {
-        specular_->follow(grid_, {blocks_, sampler_.packets(), hits_, normals_}, colors_);
+        specular_->follow(grid_, {blocks_, sampler_.packets(), sampler_.points(), hits_, normals_}, colors_);
     }
     const Size size = pipeline.film.size();
     for (int y = std::max(tile.y0, 0); y < std::min(tile.y1, size.height); y += kBlockSide) {

@@ -99,9 +99,10 @@ void SpecularPaths::follow(const RayPacket& rays, const HitPacket& hits,
     advance(first_stage(rays, hits, normals), depth, &record, nullptr, false);
 }
 
-void SpecularPaths::follow(const RayPacket& rays, const HitPacket& hits,
+void SpecularPaths::follow(const RayPacket& rays, const PointPacket& points, const HitPacket& hits,
                            const NormalPacket& normals, PathTable& table,
                            std::vector<PathLeg>& legs, ColorPacket& colors) {
+    points_ = points;
     Record record{table, legs};
     advance(first_stage(rays, hits, normals), pipeline_.settings.specular_depth, &record, &colors,
             true);
@@ -194,7 +195,7 @@ void SpecularPaths::arrive(Stage& stage) {
 }
 
 void SpecularPaths::shade(const Stage& stage, ColorPacket& colors) const {
-    pipeline_.shader.shade(stage.leg.hits, stage.leg.normals, colors);
+    pipeline_.shader.shade({stage.leg.rays, points_, stage.leg.hits, stage.leg.normals}, colors);
     for (int i = 0; i < kLanes; ++i) {
         if (stage.leg.hits.object[i] != kNoObject || !stage.bent[static_cast<std::size_t>(i)]) {
             continue;

@@ -33,9 +33,10 @@ class SpecularPaths {
     void follow(const RayPacket& rays, const HitPacket& hits, const NormalPacket& normals,
                 int depth, PathTable& table, std::vector<PathLeg>& legs);
     /// The same to the depth that is set; and mixes what is seen along the way into the colours of
-    /// the hits.
-    void follow(const RayPacket& rays, const HitPacket& hits, const NormalPacket& normals,
-                PathTable& table, std::vector<PathLeg>& legs, ColorPacket& colors);
+    /// the hits; `points` are those of the screen through which the rays run.
+    void follow(const RayPacket& rays, const PointPacket& points, const HitPacket& hits,
+                const NormalPacket& normals, PathTable& table, std::vector<PathLeg>& legs,
+                ColorPacket& colors);
 
     std::size_t rays() const { return rays_; }  ///< traced so far
 
@@ -64,6 +65,7 @@ class SpecularPaths {
 
     const Pipeline& pipeline_;
     std::array<float, 4> opaque_background_;
+    PointPacket points_{};  ///< of the rays at hand
     std::size_t rays_ = 0;
 };
 

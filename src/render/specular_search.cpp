@@ -59,7 +59,8 @@ void SpecularSearch::follow(const SampleGrid& lattice, const LatticeHits& hits,
         const int j = (blocks_[k].y - grid_.y0) / kBlockSide;
         block_at_[static_cast<std::size_t>(j * blocks_across_ + i)] = static_cast<std::uint32_t>(k);
         if (!paths_.goes_on(hits.hits[k])) continue;
-        paths_.follow(hits.rays[k], hits.hits[k], hits.normals[k], table_, legs_, colors[k]);
+        paths_.follow(hits.rays[k], hits.points[k], hits.hits[k], hits.normals[k], table_, legs_,
+                      colors[k]);
     }
     first_leg_.push_back(static_cast<std::uint32_t>(legs_.size()));
 }

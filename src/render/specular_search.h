@@ -22,6 +22,7 @@ namespace ink {
 struct LatticeHits {
     std::span<const Block> blocks;
     std::span<const RayPacket> rays;
+    std::span<const PointPacket> points;
     std::span<const HitPacket> hits;
     std::span<const NormalPacket> normals;  ///< shading normals, where anything was hit
 };
