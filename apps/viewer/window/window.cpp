@@ -156,12 +156,12 @@ Window::Window(ink::Size size, const std::string& title) {
             size.height = std::min(size.height, height - kFrame);
         }
     }
+    watch_display();  // the display can go while the window is made
     window_ = glfwCreateWindow(size.width, size.height, title.c_str(), nullptr, nullptr);
     if (window_ == nullptr) {
         glfwTerminate();
         refuse();
     }
-    watch_display();
     glfwMakeContextCurrent(window_);
     glfwSwapInterval(1);
     glfwSetWindowUserPointer(window_, this);
