@@ -317,5 +317,38 @@ TEST(Speck, ThatOneRayAloneSeesHasNoLine) {
     EXPECT_TRUE(search({{front}}, 1).segments.empty());
 }
 
+/// A crack in the nearer surface, narrower than lattice points are apart but met by some of them.
+TEST(Slit, NarrowerThanAQuarterOfTheLatticesSpacingHasNoLine) {
+    const auto slit_between = [](double angle_deg, double width) {
+        const double nx = std::sin(angle_deg * kDegrees);
+        const double ny = -std::cos(angle_deg * kDegrees);
+        return [=](double x, double y) {
+            return std::abs((x - 24.5) * nx + (y - 24.5) * ny) < 0.5 * width;
+        };
+    };
+    for (const double angle : {0.0, 17.0, 45.0, 71.0}) {
+        const auto cracked = [&](double width) {
+            const Region crack = slit_between(angle, width);
+            const Surface whole = plane(1, {24, 24, 0}, {0.1, 0.2, 1});
+            return Surface{1, [=](double x, double y) -> std::optional<Hit> {
+                               if (crack(x, y)) return std::nullopt;
+                               return whole.at(x, y);
+                           }};
+        };
+        for (const GeometryId id : {1U, 2U}) {
+            const Surface behind = plane(id, {24, 24, -9}, {0, 0.3, 1});
+            EXPECT_TRUE(search({{cracked(0.1), behind}}, 1).segments.empty()) << angle;
+            EXPECT_GT(total_length(search({{cracked(1.5), behind}}, 1)), 80.0) << angle;
+        }
+        EXPECT_TRUE(search({{cracked(0.1)}}, 1).segments.empty()) << angle;
+        // A facet of another direction at the same depth.
+        const Surface whole = plane(1, {24, 24, 0}, {0.1, 0.2, 1});
+        const Surface turned{1, [=](double x, double y) -> std::optional<Hit> {
+                                 return Hit{whole.at(x, y)->z - 0.003, {0.1, 0.9, 1}};
+                             }};
+        EXPECT_TRUE(search({{cracked(0.1), turned}}, 1).segments.empty()) << angle;
+    }
+}
+
 }  // namespace
 }  // namespace ink::test

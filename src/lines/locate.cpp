@@ -16,6 +16,16 @@ float depth_jump(const Sample& a, const Sample& b) {
     return size > 0.0F ? std::abs(dot(b.position - a.position, normals)) / size : 0.0F;
 }
 
+/// The same in lengths of their distance: the sine of the angle between that and the surface.
+float jump_sine(const Sample& a, const Sample& b) {
+    const float distance = length(b.position - a.position);
+    return distance > 0.0F ? depth_jump(a, b) / distance : 0.0F;
+}
+
+bool lies_in_front(const Sample& a, const Sample& b) {
+    return b.id == kBackground || (a.id != kBackground && a.t <= b.t);
+}
+
 /// How far the normal turns between two hits, as the chord on the unit sphere: 2 sin(angle / 2).
 float turn(const Sample& a, const Sample& b) { return length(b.normal - a.normal); }
 
@@ -78,6 +88,7 @@ void Locator::locate(const SampleGrid& grid, std::span<const SuspectEdge> edges,
         step(sample);
     }
     drop_specks(sample);
+    drop_slits(grid.spacing, sample);
     refine_steep(sample);
 
     crossings.clear();
@@ -369,6 +380,46 @@ bool Locator::is_speck(const Interval& interval, const Sample& beyond) const {
            depth_jump(before, beyond) <= 0.5F * depth_jump(before, speck) + 1e-6F;
 }
 
+/// One more sample behind each crossing tells whether the surface in front goes on there. Where
+/// depths are alike, either side may be the slit.
+void Locator::drop_slits(float spacing, const SampleFunction& sample) {
+    active_.clear();
+    points_.clear();
+    const auto look_beyond = [&](std::size_t k, bool second) {
+        const Interval& interval = intervals_[k];
+        const Vec2f across = interval.b - interval.a;
+        const Vec2f step =
+            across * (settings_.slit_width * spacing / std::sqrt(dot(across, across)));
+        active_.push_back(2 * k + (second ? 1 : 0));
+        points_.push_back(second ? interval.b + step : interval.a - step);
+    };
+    for (std::size_t k = 0; k < intervals_.size(); ++k) {
+        const Interval& interval = intervals_[k];
+        if (interval.state != State::located) continue;
+        const bool second_behind = lies_in_front(interval.at_a, interval.at_b);
+        look_beyond(k, second_behind);
+        if (interval.suspicion != Suspicion::id && !leaps(interval)) look_beyond(k, !second_behind);
+    }
+    samples_.resize(points_.size());
+    sample(points_, samples_);
+    for (std::size_t n = 0; n < active_.size(); ++n) {
+        Interval& interval = intervals_[active_[n] / 2];
+        const bool second = active_[n] % 2 != 0;
+        const Sample& before = second ? interval.at_a : interval.at_b;
+        const Sample& within = second ? interval.at_b : interval.at_a;
+        if (is_slit(before, within, samples_[n])) interval.state = State::smooth;
+    }
+}
+
+/// Whether the surface before the slit goes on beyond it, and is not what is seen within.
+bool Locator::is_slit(const Sample& before, const Sample& within, const Sample& beyond) const {
+    constexpr float kOneSurface = 0.2F;
+    const auto one_surface = [&](const Sample& a, const Sample& b) {
+        return a.id == b.id && turn(a, b) <= least_turn_ && jump_sine(a, b) < kOneSurface;
+    };
+    return one_surface(before, beyond) && !one_surface(within, beyond);
+}
+
 /// A front surface that turns away at its limb is so steep there that a small gap behind it could
 /// pass for contact.
 void Locator::refine_steep(const SampleFunction& sample) {
@@ -402,7 +453,7 @@ bool Locator::classify(const Interval& interval, Crossing& crossing) const {
     if (interval.state == State::foreseen) return classify_foreseen(interval, crossing);
 
     crossing.point = (interval.a + interval.b) * 0.5F;
-    const bool a_in_front = b.id == kBackground || (a.id != kBackground && a.t <= b.t);
+    const bool a_in_front = lies_in_front(a, b);
     crossing.nearer = a_in_front ? a.id : b.id;
     crossing.first_in_front = a_in_front;
     crossing.t = a_in_front ? a.t : b.t;
@@ -427,7 +478,7 @@ bool Locator::classify(const Interval& interval, Crossing& crossing) const {
 bool Locator::ends_at_rim(const Interval& interval) const {
     const Sample& a = interval.at_a;
     const Sample& b = interval.at_b;
-    const bool a_in_front = b.id == kBackground || (a.id != kBackground && a.t <= b.t);
+    const bool a_in_front = lies_in_front(a, b);
     const Sample& front = a_in_front ? a : b;
     if (!std::isfinite(front.rim)) return false;
     const auto depth = static_cast<double>(front.t);

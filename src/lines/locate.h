@@ -44,6 +44,10 @@ struct LocateSettings {
     float surviving_turn = 0.3F;
     /// A surface ends at an open edge if the crossing lies within this many last intervals of one.
     float rim_slack = 2.0F;
+    /// A surface that is seen through a slit in another one, narrower than this many lattice
+    /// spacings, has no line: meshes whose triangles do not quite meet are full of such slits, and
+    /// which lattice points see through them is chance.
+    float slit_width = 0.25F;
     /// Creases: none below the first angle, full strength from the second on, smoothstep between.
     float crease_min_deg = 10.0F;
     float crease_full_deg = 30.0F;
@@ -111,6 +115,8 @@ class Locator {
     void split(std::size_t k, Vec2f point, const Sample& sample);
     void drop_specks(const SampleFunction& sample);
     bool is_speck(const Interval& interval, const Sample& beyond) const;
+    void drop_slits(float spacing, const SampleFunction& sample);
+    bool is_slit(const Sample& before, const Sample& within, const Sample& beyond) const;
     void refine_steep(const SampleFunction& sample);
     void move_end(Interval& interval, bool first, Vec2f point, const Sample& sample) const;
     bool surfaces_meet(const Interval& interval) const;
