@@ -280,6 +280,9 @@ void LineFinder::map_faces(const Tile& tile) {
     const Timer timer(stats_.lines_ms);
     const int q = edges_.q;
     for (std::size_t k = 0; k < blocks_.size(); ++k) {
+        // Those cut off at the tile's end belong to the next tile, which may be at work.
+        const bool whole = blocks_[k].columns == kBlockSide && blocks_[k].rows == kBlockSide;
+        if (!whole) continue;
         if (q == 1) faces_->put(blocks_[k].x, blocks_[k].y, hits_[k]);
         add_face_density(k);
     }
@@ -299,7 +302,6 @@ void LineFinder::map_faces(const Tile& tile) {
 /// a line of any direction crosses lattice edges 4 / pi times a spacing, on average.
 void LineFinder::add_face_density(std::size_t block) {
     const Block& place = blocks_[block];
-    if (place.columns < kBlockSide || place.rows < kBlockSide) return;  // another tile has it
     const HitPacket& hits = hits_[block];
     int changes = 0;
     const auto compare = [&](int a, int b) {
