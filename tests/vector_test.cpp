@@ -1,61 +1,24 @@
 // Lines as curves: from scenes to SVG, PDF and JSON.
 
 #include <gtest/gtest.h>
-#include <png.h>
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <string>
 #include <vector>
 
-#include "io/reader.h"
-#include "paths.h"
-#include "render/render.h"
+#include "line_art.h"
 #include "scenes.h"
 #include "test_files.h"
-#include "vector/line_art.h"
 #include "vector/lines_json.h"
 #include "vector/pdf_writer.h"
-#include "vector/svg_writer.h"
 #include "vector/xml_text.h"
 
 namespace ink::test {
 namespace {
-
-struct Drawn {
-    Film film;
-    LineArt art;
-};
-
-Drawn draw(const Scene& scene, const Settings& settings, bool inked = false) {
-    const auto tracer = make_embree_tracer(scene);
-    Drawing drawing;
-    Film film =
-        render(scene, *tracer, settings, {.display = true, .lines = inked}, {}, nullptr, &drawing);
-    LineArt art = make_line_art(scene, settings, drawing, film.display());
-    return {std::move(film), std::move(art)};
-}
-
-Scene acetaminophen() {
-    return Scene(read_file(source_dir() / "samples/acetaminophen.xyz").objects);
-}
-
-Settings picture(int side = 512) {
-    Settings settings;
-    settings.size = {side, side};
-    settings.threads = 2;
-    return settings;
-}
-
-std::string svg_of(const LineArt& art) {
-    const TemporaryFolder folder;
-    write_svg(folder.path() / "x.svg", art);
-    return read_bytes(folder.path() / "x.svg");
-}
 
 /// Ends of the chains that meet at each vertex.
 std::map<std::uint32_t, int> degrees(const std::vector<Chain>& chains) {
@@ -283,32 +246,6 @@ Scene with_wild_name() {
     return Scene(std::move(objects));
 }
 
-bool has_rsvg() { return std::system("rsvg-convert --version >/dev/null 2>&1") == 0; }
-
-/// Grey values, over white, of a picture that librsvg makes of an SVG.
-std::vector<float> rasterised(const std::string& svg, int side) {
-    const TemporaryFolder folder;
-    const auto file = folder.write("x.svg", svg);
-    const std::string png = (folder.path() / "x.png").string();
-    const std::string command = "rsvg-convert -b white -w " + std::to_string(side) + " -h " +
-                                std::to_string(side) + " '" + file.string() + "' -o '" + png + "'";
-    if (std::system(command.c_str()) != 0) return {};
-    png_image image{};
-    image.version = PNG_IMAGE_VERSION;
-    if (png_image_begin_read_from_file(&image, png.c_str()) == 0) return {};
-    image.format = PNG_FORMAT_RGBA;
-    std::vector<std::uint8_t> bytes(PNG_IMAGE_SIZE(image));
-    png_image_finish_read(&image, nullptr, bytes.data(), 0, nullptr);
-    std::vector<float> values;
-    for (std::size_t k = 0; k < bytes.size(); k += 4) {
-        values.push_back(static_cast<float>(bytes[k + 1]) / 255.0F);
-    }
-    return values;
-}
-
-#define REQUIRE_RSVG() \
-    if (!has_rsvg()) GTEST_SKIP() << "rsvg-convert is not installed (package librsvg2-bin)"
-
 TEST(Svg, IsWellFormedForAnyName) {
     REQUIRE_RSVG();
     const LineArt art = draw(with_wild_name(), picture(64)).art;
@@ -317,65 +254,6 @@ TEST(Svg, IsWellFormedForAnyName) {
     write_pdf(folder.path() / "x.pdf", art);
     write_lines_json(folder.path() / "x.json", art);
     EXPECT_TRUE(nlohmann::json::accept(read_bytes(folder.path() / "x.json")));
-}
-
-/// Mean absolute difference of the ink of SVG and pixels, both drawn as lines alone.
-double difference_to_pixels(const Scene& scene, int side) {
-    Settings settings = picture(side);
-    settings.compose = Compose::lines;
-    const Drawn drawn = draw(scene, settings, true);
-    const std::vector<float> svg = rasterised(svg_of(drawn.art), side);
-    const auto& pixels = drawn.film.display().pixels;
-    if (svg.size() != pixels.size()) return 1.0;
-    double sum = 0.0;
-    for (std::size_t k = 0; k < svg.size(); ++k) {
-        const double value = static_cast<double>(pixels[k] >> 8U & 255U) / 255.0;
-        sum += std::abs(value - static_cast<double>(svg[k]));
-    }
-    return sum / static_cast<double>(svg.size());
-}
-
-TEST(Svg, LooksLikeThePixels) {
-    REQUIRE_RSVG();
-    EXPECT_LT(difference_to_pixels(acetaminophen(), 512), 0.003);
-    for (const char* name : {"meshes/fandisk.obj", "meshes/stanford-bunny.ply",
-                             "molecules/4hhb.pdb", "meshes/unit_cube.stl"}) {
-        const auto file = data_file(name);
-        if (!std::filesystem::exists(file)) continue;
-        EXPECT_LT(difference_to_pixels(Scene(read_file(file).objects), 1024), 0.01) << name;
-    }
-}
-
-TEST(Regions, LeaveNoGapsBetweenNeighbours) {
-    REQUIRE_RSVG();
-    Settings settings = picture(256);
-    settings.shading.transparent_background = true;
-    Drawn drawn = draw(acetaminophen(), settings);
-    drawn.art.chains.clear();
-    drawn.art.curves.clear();
-    // Black regions on white paper: what shines through between two of them is not black.
-    for (Region& region : drawn.art.regions) region.color = {0, 0, 0};
-    constexpr int kScale = 4;
-    const std::vector<float> values = rasterised(svg_of(drawn.art), 256 * kScale);
-    ASSERT_EQ(values.size(), 256U * kScale * 256U * kScale);
-    const auto& pixels = drawn.film.display().pixels;
-    const auto inside = [&](int x, int y) {
-        for (int k = 0; k < 9; ++k) {
-            const int at = (y + k / 3 - 1) * 256 + x + k % 3 - 1;
-            if (pixels[static_cast<std::size_t>(at)] >> 24U != 255U) return false;
-        }
-        return true;
-    };
-    int checked = 0;
-    for (int y = kScale; y < 255 * kScale; ++y) {
-        for (int x = kScale; x < 255 * kScale; ++x) {
-            if (!inside(x / kScale, y / kScale)) continue;
-            ++checked;
-            ASSERT_LT(values[static_cast<std::size_t>(y * 256 * kScale + x)], 0.01F)
-                << x << ", " << y;
-        }
-    }
-    EXPECT_GT(checked, 100000);
 }
 
 }  // namespace

@@ -323,9 +323,10 @@ void Chainer::make_chain(Way first, ChainGraph& graph) {
     for (Way way = first; way != kNone && used_[way >> 1U] == 0; way = next_in_chain(way)) {
         const Segment& piece = segment(way);
         used_[way >> 1U] = 1;
-        const float before = chain.t.empty() ? piece.t : segment(last).t;
+        const Segment& before = chain.t.empty() ? piece : segment(last);
         chain.points.push_back(start_point(way));
-        chain.t.push_back(0.5F * (before + piece.t));
+        chain.t.push_back(0.5F * (before.t + piece.t));
+        chain.strengths.push_back(0.5F * (before.strength + piece.strength));
         const float size = distance(piece.a, piece.b);
         strength += static_cast<double>(size) * static_cast<double>(piece.strength);
         total += static_cast<double>(size);
@@ -337,6 +338,7 @@ void Chainer::make_chain(Way first, ChainGraph& graph) {
     if (!chain.closed) {
         chain.points.push_back(start_point(opposite(last)));
         chain.t.push_back(segment(last).t);
+        chain.strengths.push_back(segment(last).strength);
     }
     chain.strength = static_cast<float>(strength / total);
     chain.left_in_front = in_front > 0;

@@ -98,4 +98,9 @@ float width_scale(float share, float most) {
     return (free + room * (1.0F - std::exp((free - share) / room))) / share;
 }
 
+float LineThinning::scale_at(Vec2f point, int level) const {
+    if (most >= 1.0F) return 1.0F;
+    return width_scale((level == 0 ? direct : all).at(point), most);
+}
+
 }  // namespace ink

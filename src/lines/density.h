@@ -53,4 +53,14 @@ class LineDensity {
 /// they cover no more than `most`: 1 as long as there is room, then less, smoothly.
 float width_scale(float share, float most);
 
+/// By how much lines get thinner where they are dense.
+struct LineThinning {
+    LineDensity all;     ///< of all lines
+    LineDensity direct;  ///< of those seen directly: what is seen in a mirror must not thin them
+    float most = 1.0F;   ///< share of an area that lines may cover; 1: they are never thinned
+
+    /// What to scale the width of a line of this level by, see Segment.
+    float scale_at(Vec2f point, int level) const;
+};
+
 }  // namespace ink

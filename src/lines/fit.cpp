@@ -34,18 +34,6 @@ double distance_from_line(Vec2d p, Vec2d a, Vec2d b) {
 
 }  // namespace
 
-bool is_straight(Vec2f start, const CurvePiece& piece) {
-    constexpr double kInvisible = 0.01;  // pixels
-    const Vec2d a = to_double(start);
-    const Vec2d b = to_double(piece.end);
-    const Vec2d along = unit(b - a);
-    const double first = dot(to_double(piece.control1) - a, along);
-    const double second = dot(to_double(piece.control2) - a, along);
-    return first >= 0.0 && second <= distance(a, b) && first <= second &&
-           distance_from_line(to_double(piece.control1), a, b) < kInvisible &&
-           distance_from_line(to_double(piece.control2), a, b) < kInvisible;
-}
-
 void CurveFitter::fit(std::span<const Vec2f> points, bool closed, std::span<const std::size_t> cuts,
                       std::vector<Curve>& curves) {
     take(points, closed, cuts);
@@ -67,10 +55,8 @@ void CurveFitter::fit(std::span<const Vec2f> points, bool closed, std::span<cons
             while (!is_break(++end, false)) {
             }
             if (straight) {
-                const Vec2d a = knots_[from].point;
-                const Vec2d third = (knots_[end].point - a) * (1.0 / 3.0);
-                curve_.pieces.push_back({to_float(a + third), to_float(a + third * 2.0),
-                                         to_float(knots_[end].point), true});
+                curve_.pieces.push_back(
+                    straight_piece(to_float(knots_[from].point), to_float(knots_[end].point)));
             } else {
                 fit_between(from, end);
             }

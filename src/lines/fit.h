@@ -7,20 +7,10 @@
 #include <vector>
 
 #include "base/vec.h"
+#include "lines/curve.h"
 #include "lines/parabola.h"
 
 namespace ink {
-
-/// A cubic Bezier from where the piece before it ends.
-struct CurvePiece {
-    Vec2f control1, control2, end;  ///< pixels
-    bool straight = false;          ///< the controls lie on the straight way
-};
-
-struct Curve {
-    Vec2f start;
-    std::vector<CurvePiece> pieces;
-};
 
 struct FitSettings {
     double tolerance = 0.1;  ///< largest distance of a point from its curve, pixels
@@ -92,8 +82,5 @@ class CurveFitter {
     std::vector<std::size_t> ends_, best_ends_;
     Curve curve_;
 };
-
-/// Whether a curve's controls lie on its chord, so near that no one can see the difference.
-bool is_straight(Vec2f start, const CurvePiece& piece);
 
 }  // namespace ink

@@ -37,16 +37,6 @@ struct PathPoints {
 
 }  // namespace
 
-Curve reversed(const Curve& curve) {
-    Curve back{curve.pieces.empty() ? curve.start : curve.pieces.back().end, {}};
-    for (std::size_t k = curve.pieces.size(); k-- > 0;) {
-        const CurvePiece& piece = curve.pieces[k];
-        const Vec2f end = k == 0 ? curve.start : curve.pieces[k - 1].end;
-        back.pieces.push_back({piece.control2, piece.control1, end, piece.straight});
-    }
-    return back;
-}
-
 std::vector<Curve> fit_chains(const ChainGraph& graph, const FitSettings& settings, int threads) {
     struct Worker {
         explicit Worker(const FitSettings& all) : fitter(all) {}

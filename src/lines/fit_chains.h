@@ -13,7 +13,4 @@ namespace ink {
 std::vector<Curve> fit_chains(const ChainGraph& graph, const FitSettings& settings,
                               int threads = 0);
 
-/// The same way backwards.
-Curve reversed(const Curve& curve);
-
 }  // namespace ink

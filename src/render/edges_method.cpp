@@ -185,6 +185,22 @@ void add_strokes(const Edges& edges, const std::vector<std::vector<Segment>>& hi
     }
 }
 
+/// From what all workers have counted.
+LineThinning thinning_of(const Edges& edges,
+                         const std::vector<std::unique_ptr<LineFinder>>& finders) {
+    LineThinning thinning{edges.no_lines, edges.no_lines,
+                          static_cast<float>(edges.pipeline.settings.line_density)};
+    const bool goes_on = edges.pipeline.goes_on();
+    for (const auto& finder : finders) {
+        if (!finder) continue;
+        thinning.all += finder->density();
+        thinning.direct += goes_on ? finder->direct_density() : finder->density();
+    }
+    thinning.all.finish();
+    thinning.direct.finish();
+    return thinning;
+}
+
 template <class Worker>
 RenderStats total_of(const std::vector<std::unique_ptr<Worker>>& workers) {
     RenderStats total;
@@ -218,27 +234,17 @@ RenderStats render_edges(const Pipeline& pipeline, const RenderControl& control)
         hidden[i] = behind[worker]->search(edges.search_tiles[i], *finders[worker]);
     });
 
-    LineDensity density = edges.no_lines;
-    for (const auto& finder : finders) {
-        if (finder) density += finder->density();
-    }
-    density.finish();
-    LineDensity direct = edges.no_lines;
-    if (pipeline.goes_on()) {
-        for (const auto& finder : finders) {
-            if (finder) direct += finder->direct_density();
-        }
-        direct.finish();
-    }
-    if (pipeline.lines.drawing != nullptr)
+    const LineThinning thinning = thinning_of(edges, finders);
+    if (pipeline.lines.drawing != nullptr) {
         keep_lines(edges, found, hidden, *pipeline.lines.drawing);
+        pipeline.lines.drawing->thinning = thinning;
+    }
     if (edges.draw_lines && !edges.behind.empty()) add_strokes(edges, hidden, found);
 
     std::vector<std::unique_ptr<LineDrawer>> drawers(pool);
     loop.run(edges.draw_tiles.size(), [&](std::size_t i, std::size_t worker) {
         if (!drawers[worker])
-            drawers[worker] = std::make_unique<LineDrawer>(
-                edges, pipeline.goes_on() ? direct : density, density, face_map);
+            drawers[worker] = std::make_unique<LineDrawer>(edges, thinning, face_map);
         drawers[worker]->draw(edges.draw_tiles[i], found);
     });
 

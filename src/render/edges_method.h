@@ -32,7 +32,7 @@ struct Edges {
     /// Index of the tile that a point was searched in.
     std::size_t search_tile_at(Vec2f point) const;
     std::size_t style_of(LineType type, std::uint32_t object) const;
-    bool wants_faces() const { return draw_lines && wanted.has(LineType::mesh); }
+    bool wants_faces() const { return find_lines && wanted.has(LineType::mesh); }
 
     const Pipeline& pipeline;
     int q;  ///< lattice points along a pixel's side

@@ -34,16 +34,8 @@ void LineDrawer::draw(const Tile& tile, const std::vector<std::vector<ColoredSeg
     write(tile);
 }
 
-/// Below 1 where lines are dense.
-float LineDrawer::width_scale_at(Vec2f point, const LineDensity& density) const {
-    const auto most = static_cast<float>(edges_.pipeline.settings.line_density);
-    if (most >= 1.0F) return 1.0F;
-    return width_scale(density.at(point), most);
-}
-
 float LineDrawer::width_scale_of(const Segment& segment) const {
-    return width_scale_at((segment.a + segment.b) * 0.5F,
-                          segment.level == 0 ? direct_density_ : density_);
+    return thinning_.scale_at((segment.a + segment.b) * 0.5F, segment.level);
 }
 
 void LineDrawer::ink(const Segment& segment) {
@@ -59,9 +51,9 @@ void LineDrawer::for_each_face_block(const Tile& tile, Draw draw) {
     for (int y = tile.y0; y < tile.y1; y += kBlockSide) {
         for (int x = tile.x0; x < tile.x1; x += kBlockSide) {
             if (!face_edges_->measure(x, y, edges_.ink.reach(), nearest)) continue;
-            const float scale = width_scale_at({static_cast<float>(x) + 0.5F * kBlockSide,
-                                                static_cast<float>(y) + 0.5F * kBlockSide},
-                                               direct_density_);
+            const float scale = thinning_.scale_at({static_cast<float>(x) + 0.5F * kBlockSide,
+                                                    static_cast<float>(y) + 0.5F * kBlockSide},
+                                                   0);
             const auto draw_style = [&](std::uint32_t object, const NearestEdges& edges) {
                 const std::size_t style = edges_.style_of(LineType::mesh, object);
                 draw(x, y, edges, style, edges_.ink.styles[style].width_px * scale);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/lanes.h"
+#include "lines/density.h"
 #include "lines/ink.h"
 #include "lines/line_planes.h"
 #include "render/edges_method.h"
@@ -17,11 +18,9 @@ namespace ink {
 /// Draws the lines of one tile after another.
 class LineDrawer {
   public:
-    /// `direct` is the density of the lines that are seen directly, `all` that of all lines found.
     /// `faces` is what lines between faces are drawn from; null if there are none.
-    LineDrawer(const Edges& edges, const LineDensity& direct, const LineDensity& all,
-               const FaceMap* faces)
-        : edges_(edges), direct_density_(direct), density_(all), ink_(edges.ink) {
+    LineDrawer(const Edges& edges, const LineThinning& thinning, const FaceMap* faces)
+        : edges_(edges), thinning_(thinning), ink_(edges.ink) {
         if (faces == nullptr || edges.pipeline.lines.drawing != nullptr) return;
         face_edges_.emplace(edges.pipeline.camera.projection(), *faces);
         faces_ = faces;
@@ -40,7 +39,6 @@ class LineDrawer {
     void write(const Tile& tile);
 
     void ink(const Segment& segment);
-    float width_scale_at(Vec2f point, const LineDensity& density) const;
     float width_scale_of(const Segment& segment) const;
     template <class Draw>
     void for_each_face_block(const Tile& tile, Draw draw);
@@ -49,8 +47,7 @@ class LineDrawer {
     void add_face_planes(const Tile& tile);
 
     const Edges& edges_;
-    const LineDensity& direct_density_;
-    const LineDensity& density_;
+    const LineThinning& thinning_;
     InkTile ink_;
     const FaceMap* faces_ = nullptr;
     std::optional<FaceEdges> face_edges_;

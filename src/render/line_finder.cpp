@@ -129,7 +129,8 @@ void LineFinder::shade(const Tile& tile) {
         seen_[k] = pipeline.shader.shade(surface, colors_[k]) ? 1 : 0;
     }
     if (specular_) {
-        specular_->follow(grid_, {blocks_, sampler_.packets(), sampler_.points(), hits_, normals_}, colors_);
+        specular_->follow(grid_, {blocks_, sampler_.packets(), sampler_.points(), hits_, normals_},
+                          colors_);
     }
     const Size size = pipeline.film.size();
     for (int y = std::max(tile.y0, 0); y < std::min(tile.y1, size.height); y += kBlockSide) {
@@ -220,7 +221,7 @@ void LineFinder::keep(std::vector<ColoredSegment>& found) {
         };
         found.push_back({segment, color(segment.left_sample), color(segment.right_sample)});
         // Those between faces are counted by add_face_density.
-        if (front_ && edges_.draw_lines && edges_.wanted.has(segment.type) &&
+        if (front_ && edges_.find_lines && edges_.wanted.has(segment.type) &&
             segment.type != LineType::mesh) {
             count(segment);
         }

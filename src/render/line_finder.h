@@ -80,7 +80,7 @@ class LineFinder {
           describe_([this](std::size_t point, Sample& sample) { describe(point, sample); }),
           density_(edges.no_lines),
           direct_density_(edges.no_lines) {
-        if (front && edges.draw_lines && edges.wanted.has(LineType::ridge)) {
+        if (front && edges.find_lines && edges.wanted.has(LineType::ridge)) {
             ridges_.emplace(edges.pipeline, edges.q);
         }
         if (front && edges.pipeline.goes_on()) specular_.emplace(edges);

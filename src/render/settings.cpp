@@ -469,7 +469,7 @@ std::vector<Setting> make_table() {
          [](S& s, Text t) { s.fill = kFills.read(t); },
          [](const S& s) { return kFills.print(s.fill); }, false, one_of(kFills)},
         {"curve-tolerance", "Curves", "PX",
-         "Pixels by which a curve may miss the points that it was fitted to",
+         "Pixels by which a curve may miss the line, renderers' own error included",
          [](S& s, Text t) { s.curve_tolerance_px = read_number(t, 0.01, 10); },
          [](const S& s) { return fmt::format("{}", s.curve_tolerance_px); }, false,
          number(0.01, 2)},

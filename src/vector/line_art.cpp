@@ -1,6 +1,7 @@
 #include "vector/line_art.h"
 
 #include <algorithm>
+#include <array>
 #include <iterator>
 #include <utility>
 
@@ -42,23 +43,27 @@ int last_level(const Drawing& drawing) {
     return last;
 }
 
+/// Share of the tolerance by which curves may miss the crossings. The rest is for what crossings
+/// miss themselves, for rounding, and for renderers, which flatten curves.
+constexpr double kFitShare = 0.5;
+
 /// Lines that may be joined, as curves.
 struct Layer {
     ChainGraph graph;
     std::vector<Curve> curves;
 };
 
-Layer make_layer(const std::vector<Segment>& segments, float spacing, const Settings& settings) {
+Layer curves_of(const std::vector<Segment>& segments, float spacing, const Settings& settings) {
     Layer layer;
     layer.graph = chain_segments(segments, spacing);
     place_junctions(layer.graph, spacing);
-    layer.curves =
-        fit_chains(layer.graph, {.tolerance = settings.curve_tolerance_px}, settings.threads);
+    layer.curves = fit_chains(layer.graph, {.tolerance = kFitShare * settings.curve_tolerance_px},
+                              settings.threads);
     return layer;
 }
 
 /// Moves the lines that were asked for into the drawing, with their styles.
-void add_lines(const Settings& settings, Layer layer, LineArt& art) {
+void add_lines(const Settings& settings, const LineThinning& thinning, Layer layer, LineArt& art) {
     const double shortest = settings.min_length.pixels(settings.dpi, settings.size.height);
     for (std::size_t k = 0; k < layer.graph.chains.size(); ++k) {
         Chain& chain = layer.graph.chains[k];
@@ -75,6 +80,11 @@ void add_lines(const Settings& settings, Layer layer, LineArt& art) {
         art.dashes.push_back(chain.hidden
                                  ? settings.hidden_dashes(style.width_px, size, chain.closed)
                                  : std::nullopt);
+        for (Stroke& stroke :
+             make_strokes(chain, layer.curves[k], weigh(chain, style.width_px, thinning))) {
+            stroke.chain = static_cast<std::uint32_t>(art.chains.size());
+            art.strokes.push_back(std::move(stroke));
+        }
         art.chains.push_back(std::move(chain));
         art.curves.push_back(std::move(layer.curves[k]));
     }
@@ -92,8 +102,8 @@ LineArt make_line_art(const Scene& scene, const Settings& settings, const Drawin
     art.names = GeometryNames(scene, settings.ids);
 
     const int levels = last_level(drawing) + 1;
-    Layer direct = make_layer(levels == 1 ? drawing.segments : of_level(drawing, 0),
-                              drawing.spacing, settings);
+    Layer direct =
+        curves_of(levels == 1 ? drawing.segments : of_level(drawing, 0), drawing.spacing, settings);
     const Fill fill = settings.compose == Compose::lines ? Fill::none : settings.fill;
     if (fill == Fill::flat) {
         art.regions = make_regions(direct.graph, direct.curves, drawing.lower, drawing.upper);
@@ -102,13 +112,68 @@ LineArt make_line_art(const Scene& scene, const Settings& settings, const Drawin
     if (fill == Fill::image) art.image = image;
 
     if (!settings.draws_lines()) return art;
-    add_lines(settings, std::move(direct), art);
+    add_lines(settings, drawing.thinning, std::move(direct), art);
     for (int level = 1; level < levels; ++level) {
-        add_lines(settings, make_layer(of_level(drawing, level), drawing.spacing, settings), art);
+        add_lines(settings, drawing.thinning,
+                  curves_of(of_level(drawing, level), drawing.spacing, settings), art);
     }
     if (drawing.hidden.empty()) return art;
-    add_lines(settings, make_layer(drawing.hidden, drawing.spacing, settings), art);
+    add_lines(settings, drawing.thinning, curves_of(drawing.hidden, drawing.spacing, settings),
+              art);
     return art;
+}
+
+namespace {
+
+/// From the bottom up: outlines are the strongest statement and go on top.
+constexpr std::array<LineType, kLineTypes> kOrder{
+    LineType::mesh,           LineType::ridge,    LineType::crease,    LineType::intersection,
+    LineType::self_occlusion, LineType::boundary, LineType::silhouette};
+
+bool same_ink(const StrokeStyle& a, const StrokeStyle& b) {
+    return a.color == b.color && a.opacity == b.opacity;
+}
+
+template <class Belongs>
+LineLayer make_layer(const LineArt& art, std::string_view name, const Belongs& belongs) {
+    LineLayer layer;
+    layer.name = name;
+    for (std::size_t k = 0; k < art.strokes.size(); ++k) {
+        if (belongs(art.chains[art.strokes[k].chain])) layer.strokes.push_back(k);
+    }
+    if (layer.strokes.empty()) return layer;
+    const auto style = [&](std::size_t k) { return art.styles[art.strokes[k].chain]; };
+    layer.usual = style(layer.strokes.front());
+    if (std::ranges::all_of(layer.strokes,
+                            [&](std::size_t k) { return same_ink(style(k), layer.usual); })) {
+        layer.opacity = layer.usual.opacity;
+    }
+    std::ranges::stable_sort(layer.strokes, std::ranges::greater{}, [&](std::size_t k) {
+        return art.chains[art.strokes[k].chain].t.front();
+    });
+    return layer;
+}
+
+}  // namespace
+
+LineLayers layers_of(const LineArt& art) {
+    LineLayers all;
+    const auto add = [&](LineLayer layer) {
+        if (!layer.strokes.empty()) all.layers.push_back(std::move(layer));
+    };
+    add(make_layer(art, "hidden", [](const Chain& chain) { return chain.hidden; }));
+    for (const LineType type : kOrder) {
+        add(make_layer(art, name_of(type),
+                       [type](const Chain& chain) { return chain.type == type && !chain.hidden; }));
+    }
+    const bool alike = std::ranges::all_of(all.layers, [&](const LineLayer& layer) {
+        return layer.opacity && same_ink(layer.usual, all.layers.front().usual);
+    });
+    if (alike && !all.layers.empty()) {
+        all.opacity = all.layers.front().usual.opacity;
+        for (LineLayer& layer : all.layers) layer.opacity = 1.0;
+    }
+    return all;
 }
 
 }  // namespace ink

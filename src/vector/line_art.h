@@ -9,12 +9,13 @@
 #include "base/color.h"
 #include "base/image.h"
 #include "lines/chain.h"
+#include "lines/curve.h"
 #include "lines/dashes.h"
-#include "lines/fit.h"
 #include "lines/line_type.h"
 #include "render/drawing.h"
 #include "render/settings.h"
 #include "sampling/geometry_names.h"
+#include "vector/strokes.h"
 
 namespace ink {
 
@@ -36,15 +37,28 @@ struct LineArt {
     std::vector<Region> regions;
     std::vector<Chain> chains;        ///< of the types that were asked for; t in units of the file
     std::vector<Curve> curves;        ///< one a chain
-    std::vector<StrokeStyle> styles;  ///< one a chain
+    std::vector<StrokeStyle> styles;  ///< one a chain; strokes may be thinner
     std::vector<std::optional<Dashes>> dashes;  ///< likewise; nothing: a solid line
+    std::vector<Stroke> strokes;                ///< chain after chain
     GeometryNames names;
 };
 
-/// From the bottom up: outlines are the strongest statement and go on top.
-inline constexpr std::array<LineType, kLineTypes> kLayers{
-    LineType::mesh,           LineType::ridge,    LineType::crease,    LineType::intersection,
-    LineType::self_occlusion, LineType::boundary, LineType::silhouette};
+/// Strokes of one kind, drawn together.
+struct LineLayer {
+    std::string_view name;             ///< of the type, or "hidden"
+    std::vector<std::size_t> strokes;  ///< from the farthest to the nearest
+    StrokeStyle usual;                 ///< of the first
+    /// Of all alike, which then does not add up where they overlap; nothing: each has its own.
+    std::optional<double> opacity;
+};
+
+/// From the bottom up; none is empty. `opacity` is that of all layers, if they are equally opaque
+/// and of one colour; theirs is 1 then.
+struct LineLayers {
+    std::vector<LineLayer> layers;
+    double opacity = 1.0;
+};
+LineLayers layers_of(const LineArt& art);
 
 /// Regions reach this far below their neighbours, or a renderer that smooths the two edges one
 /// after the other lets the background shine through between them.

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -58,7 +59,16 @@ void append_line(std::string& text, const Chain& chain) {
         fmt::format_to(out, "{}[{:.3f},{:.3f},{:.7g}]", k == 0 ? "" : ",", chain.points[k].x,
                        chain.points[k].y, chain.t[k]);
     }
-    text += "]}";
+    text += ']';
+    if (std::ranges::any_of(chain.strengths,
+                            [&](float s) { return std::abs(s - chain.strength) > 1e-3F; })) {
+        text += ",\"strengths\":[";
+        for (std::size_t k = 0; k < chain.strengths.size(); ++k) {
+            fmt::format_to(out, "{}{:.3g}", k == 0 ? "" : ",", chain.strengths[k]);
+        }
+        text += ']';
+    }
+    text += '}';
 }
 
 }  // namespace

@@ -95,22 +95,63 @@ void draw_regions(cairo_t* cr, const LineArt& art) {
     }
 }
 
-template <class Belongs>
-void draw_layer(cairo_t* cr, const LineArt& art, const Belongs& belongs) {
-    for (std::size_t k = 0; k < art.chains.size(); ++k) {
-        const Chain& chain = art.chains[k];
-        if (!belongs(chain)) continue;
-        const StrokeStyle& style = art.styles[k];
-        add_curve(cr, art.curves[k], chain.closed);
-        cairo_set_line_width(cr, style.width_px);
-        set_color(cr, style.color, style.opacity * double{chain.strength});
-        if (const auto& dashes = art.dashes[k]) {
-            const std::array<double, 2> lengths{dashes->stroke, dashes->gap};
-            cairo_set_dash(cr, lengths.data(), 2, 0.0);
-        }
-        cairo_stroke(cr);
-        cairo_set_dash(cr, nullptr, 0, 0.0);
+struct DestroyPattern {
+    void operator()(cairo_pattern_t* pattern) const { cairo_pattern_destroy(pattern); }
+};
+
+void set_fade(cairo_t* cr, const Stroke& stroke, Rgb8 color, double alpha) {
+    const Vec2f from = stroke.curve.start;
+    const Vec2f to = stroke.curve.end();
+    const std::unique_ptr<cairo_pattern_t, DestroyPattern> pattern(
+        cairo_pattern_create_linear(double{from.x}, double{from.y}, double{to.x}, double{to.y}));
+    for (const auto& [offset, opacity] : stroke.fade) {
+        cairo_pattern_add_color_stop_rgba(pattern.get(), offset, color.r / 255.0, color.g / 255.0,
+                                          color.b / 255.0, alpha * opacity);
     }
+    cairo_set_source(cr, pattern.get());
+}
+
+void draw_stroke(cairo_t* cr, const LineArt& art, const Stroke& stroke, double alpha) {
+    const Rgb8 color = art.styles[stroke.chain].color;
+    add_curve(cr, stroke.curve, stroke.closed);
+    cairo_set_line_width(cr, stroke.width_px);
+    if (stroke.fade.empty()) {
+        set_color(cr, color, alpha * stroke.opacity);
+    } else {
+        set_fade(cr, stroke, color, alpha);
+    }
+    const auto& dashes = art.dashes[stroke.chain];
+    if (dashes) {
+        const std::array<double, 2> lengths{dashes->stroke, dashes->gap};
+        cairo_set_dash(cr, lengths.data(), 2, stroke.begins_at);
+    }
+    cairo_stroke(cr);
+    if (dashes) cairo_set_dash(cr, nullptr, 0, 0.0);
+}
+
+/// Draws what is to be of one opacity where it overlaps itself, too.
+template <class Draw>
+void draw_group(cairo_t* cr, double opacity, const Draw& draw) {
+    if (opacity < 1.0) cairo_push_group(cr);
+    draw();
+    if (opacity >= 1.0) return;
+    cairo_pop_group_to_source(cr);
+    cairo_paint_with_alpha(cr, opacity);
+}
+
+void draw_lines(cairo_t* cr, const LineArt& art) {
+    const LineLayers lines = layers_of(art);
+    draw_group(cr, lines.opacity, [&] {
+        for (const LineLayer& layer : lines.layers) {
+            draw_group(cr, layer.opacity.value_or(1.0), [&] {
+                for (const std::size_t k : layer.strokes) {
+                    const Stroke& stroke = art.strokes[k];
+                    draw_stroke(cr, art, stroke,
+                                layer.opacity ? 1.0 : art.styles[stroke.chain].opacity);
+                }
+            });
+        }
+    });
 }
 
 std::string value_of(const Metadata& metadata, std::string_view key) {
@@ -149,11 +190,7 @@ void encode_pdf(ByteSink& sink, const LineArt& art) {
     cairo_set_line_cap(cr, CAIRO_LINE_CAP_ROUND);
     cairo_set_line_join(cr, CAIRO_LINE_JOIN_ROUND);
     draw_regions(cr, art);
-    draw_layer(cr, art, [](const Chain& chain) { return chain.hidden; });
-    for (const LineType type : kLayers) {
-        draw_layer(cr, art,
-                   [type](const Chain& chain) { return chain.type == type && !chain.hidden; });
-    }
+    draw_lines(cr, art);
     cairo_show_page(cr);
     check(cairo_status(cr));
     cairo_surface_finish(surface.get());

@@ -8,7 +8,6 @@
 
 #include "base/color.h"
 #include "base/parallel.h"
-#include "lines/fit_chains.h"
 
 namespace ink {
 
@@ -26,10 +25,9 @@ void append(Curve& outline, const Curve& next) {
 }
 
 void append_straight(Curve& outline, Vec2f to) {
-    const Vec2f from = outline.pieces.empty() ? outline.start : outline.pieces.back().end;
+    const Vec2f from = outline.end();
     if (from == to) return;
-    const Vec2f third = (to - from) * (1.0F / 3.0F);
-    outline.pieces.push_back({from + third, from + third * 2.0F, to, true});
+    outline.pieces.push_back(straight_piece(from, to));
 }
 
 /// Area times two of the polygon through the ends and controls; negative where the inside is on the

@@ -5,7 +5,7 @@
 
 #include "base/image.h"
 #include "lines/chain.h"
-#include "lines/fit.h"
+#include "lines/curve.h"
 #include "vector/line_art.h"
 
 namespace ink {

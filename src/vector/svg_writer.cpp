@@ -87,10 +87,10 @@ class SvgText {
     void add_paper();
     void add_regions();
     void add_lines();
-    template <class Belongs>
-    void add_layer(std::string_view name, const Belongs& belongs);
-    void add_line(std::size_t k, const StrokeStyle& usual);
-    void add_style(const StrokeStyle& style);
+    void add_fades();
+    void add_layer(const LineLayer& layer);
+    void add_stroke(std::size_t k, const LineLayer& layer);
+    void add_opacity(double opacity);
     void add_names(GeometryId id, std::string_view also_of_class = {});
 
     const LineArt& art_;
@@ -156,53 +156,82 @@ void SvgText::add_regions() {
     text_ += "</g>\n";
 }
 
-void SvgText::add_style(const StrokeStyle& style) {
-    add(" stroke=\"{}\" stroke-width=\"{:.4g}\"", to_string(style.color), style.width_px);
+/// Fades between stops of one colour, for strokes to refer to.
+void SvgText::add_fades() {
+    const auto fades = [](const Stroke& stroke) { return !stroke.fade.empty(); };
+    if (std::ranges::none_of(art_.strokes, fades)) return;
+    text_ += "<defs>\n";
+    for (std::size_t k = 0; k < art_.strokes.size(); ++k) {
+        const Stroke& stroke = art_.strokes[k];
+        if (!fades(stroke)) continue;
+        const Vec2f from = stroke.curve.start;
+        const Vec2f to = stroke.curve.end();
+        add("<linearGradient id=\"fade-{}\" gradientUnits=\"userSpaceOnUse\" x1=\"{:.2f}\" "
+            "y1=\"{:.2f}\" x2=\"{:.2f}\" y2=\"{:.2f}\">",
+            k, from.x, from.y, to.x, to.y);
+        for (const auto& [offset, opacity] : stroke.fade) {
+            add("<stop offset=\"{:.3f}\" stop-color=\"{}\" stop-opacity=\"{:.2f}\"/>", offset,
+                to_string(art_.styles[stroke.chain].color), opacity);
+        }
+        text_ += "</linearGradient>\n";
+    }
+    text_ += "</defs>\n";
 }
 
 /// A group whose style is that of its first line; others of another style say so themselves.
-template <class Belongs>
-void SvgText::add_layer(std::string_view name, const Belongs& belongs) {
-    const auto first = std::ranges::find_if(art_.chains, belongs);
-    if (first == art_.chains.end()) return;
-    const StrokeStyle& usual = art_.styles[static_cast<std::size_t>(first - art_.chains.begin())];
-    add("<g id=\"{0}\" class=\"{0}\" inkscape:groupmode=\"layer\" inkscape:label=\"{0}\"", name);
-    add_style(usual);
+void SvgText::add_layer(const LineLayer& layer) {
+    add("<g id=\"{0}\" class=\"{0}\" inkscape:groupmode=\"layer\" inkscape:label=\"{0}\" "
+        "stroke=\"{1}\" stroke-width=\"{2:.4g}\"",
+        layer.name, to_string(layer.usual.color), layer.usual.width_px);
+    add_opacity(layer.opacity.value_or(1.0));
     text_ += ">\n";
-    for (std::size_t k = 0; k < art_.chains.size(); ++k) {
-        if (belongs(art_.chains[k])) add_line(k, usual);
-    }
+    for (const std::size_t k : layer.strokes) add_stroke(k, layer);
     text_ += "</g>\n";
 }
 
-void SvgText::add_line(std::size_t k, const StrokeStyle& usual) {
-    const Chain& chain = art_.chains[k];
+/// Of a group as a whole.
+void SvgText::add_opacity(double opacity) {
+    if (opacity < 0.995) add(" opacity=\"{:.2f}\"", opacity);
+}
+
+void SvgText::add_stroke(std::size_t k, const LineLayer& layer) {
+    const Stroke& stroke = art_.strokes[k];
+    const Chain& chain = art_.chains[stroke.chain];
+    const StrokeStyle& style = art_.styles[stroke.chain];
     text_ += "<path";
     add_names(front(chain), chain.hidden ? name_of(chain.type) : "");
     if (behind(chain) != front(chain) && behind(chain) != kBackground) {
         add(" data-behind=\"{}\"", xml_text(art_.names(behind(chain)).label()));
     }
     if (chain.level > 0) add(" data-level=\"{}\"", chain.level);
-    const StrokeStyle& style = art_.styles[k];
-    if (style.color != usual.color || style.width_px != usual.width_px) add_style(style);
-    const double opacity = style.opacity * static_cast<double>(chain.strength);
+    if (!stroke.fade.empty()) {
+        add(" stroke=\"url(#fade-{})\"", k);
+    } else if (style.color != layer.usual.color) {
+        add(" stroke=\"{}\"", to_string(style.color));
+    }
+    if (std::abs(stroke.width_px - layer.usual.width_px) > 0.005) {
+        add(" stroke-width=\"{:.3g}\"", stroke.width_px);
+    }
+    const double opacity =
+        (layer.opacity ? 1.0 : style.opacity) * (stroke.fade.empty() ? stroke.opacity : 1.0);
     if (opacity < 0.995) add(" stroke-opacity=\"{:.2f}\"", opacity);
-    if (art_.dashes[k]) {
-        add(" stroke-dasharray=\"{:.2f} {:.2f}\"", art_.dashes[k]->stroke, art_.dashes[k]->gap);
+    if (const auto& dashes = art_.dashes[stroke.chain]) {
+        add(" stroke-dasharray=\"{:.2f} {:.2f}\"", dashes->stroke, dashes->gap);
+        if (stroke.begins_at > 0.0) add(" stroke-dashoffset=\"{:.2f}\"", stroke.begins_at);
     }
     text_ += " d=\"";
-    append_curve(text_, art_.curves[k], chain.closed);
+    append_curve(text_, stroke.curve, stroke.closed);
     text_ += "\"/>\n";
 }
 
 void SvgText::add_lines() {
-    if (art_.chains.empty()) return;
-    text_ += "<g id=\"lines\" fill=\"none\" stroke-linecap=\"round\" stroke-linejoin=\"round\">\n";
-    add_layer("hidden", [](const Chain& chain) { return chain.hidden; });
-    for (const LineType type : kLayers) {
-        add_layer(name_of(type),
-                  [type](const Chain& chain) { return chain.type == type && !chain.hidden; });
-    }
+    const LineLayers lines = layers_of(art_);
+    if (lines.layers.empty()) return;
+    add_fades();
+    text_ += "<g id=\"lines\" fill=\"none\" stroke-linecap=\"round\" stroke-linejoin=\"round\"";
+    add_opacity(lines.opacity);
+    text_ += ">\n";
+    for (const LineLayer& layer : lines.layers) add_layer(layer);
     text_ += "</g>\n";
 }
 
