@@ -14,6 +14,7 @@
 #include "render/hidden_lines.h"
 #include "render/line_drawer.h"
 #include "render/line_finder.h"
+#include "render/mend_lines.h"
 
 namespace ink {
 
@@ -234,6 +235,10 @@ RenderStats render_edges(const Pipeline& pipeline, const RenderControl& control)
         hidden[i] = behind[worker]->search(edges.search_tiles[i], *finders[worker]);
     });
 
+    RenderStats mending;
+    if (edges.find_lines && edges.wanted.has(LineType::self_occlusion)) {
+        mending = mend_lines(edges, found);
+    }
     const LineThinning thinning = thinning_of(edges, finders);
     if (pipeline.lines.drawing != nullptr) {
         keep_lines(edges, found, hidden, *pipeline.lines.drawing);
@@ -251,6 +256,7 @@ RenderStats render_edges(const Pipeline& pipeline, const RenderControl& control)
     RenderStats total = total_of(finders);
     total += total_of(behind);
     total += total_of(drawers);
+    total += mending;
     return total.mean_over(threads);
 }
 

@@ -44,6 +44,9 @@ class LineFinder {
         return found;
     }
 
+    /// More samples, anywhere.
+    const SampleFunction& more_samples() const { return sample_; }
+
     /// Whether any ray of the last tile's lattice hit anything.
     bool saw_anything() const { return saw_anything_; }
     /// Of the last tile: where lines cross the edges of the lattice. They name these edges by their

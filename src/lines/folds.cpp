@@ -1,0 +1,473 @@
+#include "lines/folds.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <numeric>
+#include <optional>
+#include <tuple>
+#include <utility>
+
+namespace ink {
+
+namespace {
+
+constexpr std::uint32_t kNone = 0xFFFFFFFFU;
+
+float length(Vec2f v) { return std::sqrt(v.x * v.x + v.y * v.y); }
+Vec2f unit(Vec2f v) { return v * (1.0F / std::max(length(v), 1e-12F)); }
+float dot(Vec2f a, Vec2f b) { return a.x * b.x + a.y * b.y; }
+Vec2f left_of(Vec2f way) { return {way.y, -way.x}; }
+
+Vec2f nearest_on(const Segment& s, Vec2f p) {
+    const Vec2f d = s.b - s.a;
+    const float squared = dot(d, d);
+    if (squared == 0.0F) return s.a;
+    return s.a + d * std::clamp(dot(p - s.a, d) / squared, 0.0F, 1.0F);
+}
+
+/// Segments by squares of the picture, to ask which are near a point.
+class SegmentSquares {
+  public:
+    explicit SegmentSquares(std::span<const Segment> segments) {
+        entries_.reserve(segments.size());
+        for (std::uint32_t k = 0; k < segments.size(); ++k) {
+            entries_.emplace_back(square((segments[k].a + segments[k].b) * 0.5F), k);
+        }
+        std::ranges::sort(entries_);
+    }
+
+    /// Calls `visit` for every segment that may come within a pixel or two of `p`.
+    template <class Visit>
+    void near(Vec2f p, Visit visit) const {
+        for (const float dy : {-kReach, kReach}) {
+            for (const float dx : {-kReach, kReach}) {
+                const std::uint64_t key = square({p.x + dx, p.y + dy});
+                const bool seen_before = (dx > 0.0F && key == square({p.x - kReach, p.y + dy})) ||
+                                         (dy > 0.0F && key == square({p.x + dx, p.y - kReach}));
+                if (seen_before) continue;
+                auto at = std::ranges::lower_bound(entries_, std::pair{key, 0U});
+                for (; at != entries_.end() && at->first == key; ++at) visit(at->second);
+            }
+        }
+    }
+
+  private:
+    static constexpr float kSide = 16.0F;
+    static constexpr float kReach = 2.5F;
+
+    static std::uint64_t square(Vec2f p) {
+        const auto at = [](float x) {
+            return static_cast<std::uint32_t>(static_cast<int>(std::floor(x / kSide)) + (1 << 30));
+        };
+        return static_cast<std::uint64_t>(at(p.y)) << 32U | at(p.x);
+    }
+
+    std::vector<std::pair<std::uint64_t, std::uint32_t>> entries_;
+};
+
+/// A self-occlusion that ends on its own, and the way on from there.
+struct LooseEnd {
+    Vec2f point, way;
+    std::uint32_t fold = 0;
+    bool at_b = false;
+    bool open = true;
+    std::vector<Vec2f> path{};      ///< from the point on
+    std::uint32_t reached = kNone;  ///< the segment that the path ends on
+};
+
+class FoldMender {
+  public:
+    FoldMender(std::span<const Segment> lines, const Viewpoint& viewpoint, float spacing,
+               float width, const SampleFunction& sample, const FoldSettings& settings)
+        : lines_(lines),
+          viewpoint_(viewpoint),
+          spacing_(spacing),
+          width_(width),
+          sample_(sample),
+          settings_(settings) {}
+
+    FoldRepairs run() {
+        for (std::uint32_t k = 0; k < lines_.size(); ++k) {
+            if (lines_[k].type == LineType::self_occlusion) folds_.push_back(k);
+        }
+        if (folds_.empty()) return {};
+        squares_.emplace(lines_);
+        join();
+        find_loose_ends();
+        follow_valleys();
+        build_bridges();
+        find_crumbs();
+        return std::move(repairs_);
+    }
+
+  private:
+    using Key = std::tuple<float, float>;
+    struct Incidence {
+        Key key;
+        std::uint32_t segment;
+        bool at_b;
+        friend auto operator<=>(const Incidence&, const Incidence&) = default;
+    };
+
+    // Groups of segments that hang together: a forest over the indices of all lines.
+
+    std::uint32_t root(std::uint32_t k) {
+        while (parents_[k] != k) k = parents_[k] = parents_[parents_[k]];
+        return k;
+    }
+    void unite(std::uint32_t a, std::uint32_t b) {
+        const std::uint32_t x = root(a);
+        const std::uint32_t y = root(b);
+        parents_[std::max(x, y)] = std::min(x, y);
+    }
+    bool is_fold(std::uint32_t k) const { return lines_[k].type == LineType::self_occlusion; }
+
+    void join() {
+        parents_.resize(lines_.size());
+        std::iota(parents_.begin(), parents_.end(), 0U);
+        incidences_.reserve(2 * folds_.size());
+        for (const std::uint32_t k : folds_) {
+            incidences_.push_back({{lines_[k].a.y, lines_[k].a.x}, k, false});
+            incidences_.push_back({{lines_[k].b.y, lines_[k].b.x}, k, true});
+        }
+        std::ranges::sort(incidences_);
+        for (std::size_t n = 1; n < incidences_.size(); ++n) {
+            if (incidences_[n].key == incidences_[n - 1].key) {
+                unite(incidences_[n].segment, incidences_[n - 1].segment);
+            }
+        }
+    }
+
+    std::span<const Incidence> meeting_at(Vec2f point) const {
+        const auto range =
+            std::ranges::equal_range(incidences_, Key{point.y, point.x}, {}, &Incidence::key);
+        return {range.begin(), range.end()};
+    }
+
+    /// The nearest line of another group, no farther away than most of a lattice cell.
+    std::uint32_t line_near(Vec2f point, std::uint32_t group) {
+        float least = 0.75F * spacing_;
+        std::uint32_t best = kNone;
+        squares_->near(point, [&](std::uint32_t k) {
+            if (is_fold(k) && root(k) == group) return;
+            const float distance = length(nearest_on(lines_[k], point) - point);
+            // Two segments may share the nearest point.
+            if (distance > least || (distance == least && best != kNone && !before(k, best)))
+                return;
+            least = distance;
+            best = k;
+        });
+        return best;
+    }
+
+    bool before(std::uint32_t k, std::uint32_t n) const {
+        const auto key = [](const Segment& s) {
+            return std::tuple(s.type, s.a.y, s.a.x, s.b.y, s.b.x);
+        };
+        return key(lines_[k]) < key(lines_[n]);
+    }
+
+    void find_loose_ends() {
+        attached_.assign(lines_.size(), 0);
+        for (std::size_t n = 0; n < incidences_.size(); ++n) {
+            const bool shared =
+                (n > 0 && incidences_[n - 1].key == incidences_[n].key) ||
+                (n + 1 < incidences_.size() && incidences_[n + 1].key == incidences_[n].key);
+            if (shared) continue;
+            const auto [key, fold, at_b] = incidences_[n];
+            const Vec2f point{std::get<1>(key), std::get<0>(key)};
+            if (line_near(point, root(fold)) != kNone) {
+                attached_[root(fold)] = 1;
+                continue;
+            }
+            ends_.push_back({point, unit(point - back_from(fold, at_b)), fold, at_b});
+        }
+    }
+
+    /// A point on the line some pixels before its end.
+    Vec2f back_from(std::uint32_t fold, bool at_b) const {
+        const float enough = 3.0F * spacing_;
+        float walked = 0.0F;
+        for (int step = 0;; ++step) {
+            const Vec2f from = at_b ? lines_[fold].b : lines_[fold].a;
+            const Vec2f to = at_b ? lines_[fold].a : lines_[fold].b;
+            walked += length(to - from);
+            const auto meeting = meeting_at(to);
+            if (walked >= enough || meeting.size() != 2 || step == 8) return to;
+            const Incidence& next = meeting[meeting[0].segment == fold ? 1 : 0];
+            fold = next.segment;
+            at_b = next.at_b;
+        }
+    }
+
+    // Valleys of the angle between surface and ray
+
+    static constexpr int kHalf = 3;
+    static constexpr int kAcross = 2 * kHalf + 1;
+
+    float facing(const Sample& sample) const {
+        return -dot(sample.normal, viewpoint_.ray_direction(sample));
+    }
+
+    /// Ends of one square of the picture in step, so that their rays are close together.
+    void follow_valleys() {
+        const auto square = [](const LooseEnd& end) {
+            constexpr float kSide = 64.0F;
+            return std::pair{std::floor(end.point.y / kSide), std::floor(end.point.x / kSide)};
+        };
+        std::ranges::stable_sort(ends_, {}, square);
+        for (std::size_t first = 0, last = 0; first < ends_.size(); first = last) {
+            while (last < ends_.size() && square(ends_[last]) == square(ends_[first])) ++last;
+            const std::span<LooseEnd> group = std::span(ends_).subspan(first, last - first);
+            while (step(group)) {
+            }
+        }
+    }
+
+    bool step(std::span<LooseEnd> group) {
+        active_.clear();
+        centres_.clear();
+        for (LooseEnd& end : group) {
+            if (!end.open) continue;
+            active_.push_back(&end);
+            const Vec2f from = end.path.empty() ? end.point : end.path.back();
+            centres_.push_back(from + end.way * spacing_);
+        }
+        if (active_.empty()) return false;
+        look_across(0.5F, true);
+        look_across(0.125F, false);
+        for (std::size_t n = 0; n < active_.size(); ++n) {
+            if (active_[n]->open) go_on(*active_[n], centres_[n]);
+        }
+        return true;
+    }
+
+    /// Moves each centre to the lowest of the points beside it. Where there is no valley, the end
+    /// is given up.
+    void look_across(float apart, bool wide) {
+        points_.clear();
+        for (std::size_t n = 0; n < active_.size(); ++n) {
+            const Vec2f aside = left_of(active_[n]->way) * (apart * spacing_);
+            for (int k = -kHalf; k <= kHalf; ++k) {
+                points_.push_back(centres_[n] + aside * static_cast<float>(k));
+            }
+        }
+        samples_.resize(points_.size());
+        sample_(points_, samples_);
+        for (std::size_t n = 0; n < active_.size(); ++n) {
+            LooseEnd& end = *active_[n];
+            const std::span<const Sample> seen = std::span(samples_).subspan(n * kAcross, kAcross);
+            std::array<float, kAcross> heights{};
+            for (std::size_t k = 0; k < kAcross; ++k) {
+                if (seen[k].id != lines_[end.fold].owner) end.open = false;
+                heights[k] = facing(seen[k]);
+            }
+            const auto lowest =
+                static_cast<std::size_t>(std::ranges::min_element(heights) - heights.begin());
+            const float rise = std::min(*std::max_element(heights.begin(), heights.begin() + kHalf),
+                                        *std::max_element(heights.end() - kHalf, heights.end()));
+            if (wide && (lowest == 0 || lowest + 1 == kAcross ||
+                         rise < heights[lowest] + settings_.least_rise ||
+                         heights[lowest] > settings_.most_facing)) {
+                end.open = false;
+            }
+            centres_[n] = points_[n * kAcross + lowest];
+        }
+    }
+
+    void go_on(LooseEnd& end, Vec2f point) {
+        const Vec2f from = end.path.empty() ? end.point : end.path.back();
+        const Vec2f way = unit(point - from);
+        if (dot(way, end.way) < 0.7F) {
+            end.open = false;
+            return;
+        }
+        end.way = unit(end.way + way);
+        end.path.push_back(point);
+        const float gone = spacing_ * static_cast<float>(end.path.size());
+        const std::uint32_t near = line_near(point, root(end.fold));
+        if (near != kNone) {
+            end.open = false;
+            if (is_fold(near) || gone <= settings_.longest_to_other * width_) end.reached = near;
+        } else if (gone > settings_.longest_bridge * width_) {
+            end.open = false;
+        }
+    }
+
+    // Bridges
+
+    void build_bridges() {
+        for (LooseEnd& end : ends_) {
+            if (end.reached == kNone) continue;
+            const bool fold = is_fold(end.reached);
+            // The other side may have come here first.
+            if (fold && root(end.reached) == root(end.fold)) continue;
+            bridge(end);
+            if (fold) {
+                unite(end.fold, end.reached);
+            } else {
+                attached_[root(end.fold)] = 1;
+            }
+        }
+        std::vector<std::uint8_t> attached(lines_.size());
+        for (std::uint32_t k = 0; k < lines_.size(); ++k) {
+            if (attached_[k] != 0) attached[root(k)] = 1;
+        }
+        attached_ = std::move(attached);
+    }
+
+    void bridge(const LooseEnd& end) {
+        const Segment& target = lines_[end.reached];
+        Vec2f foot = nearest_on(target, end.path.back());
+        for (const Vec2f tip : {target.a, target.b}) {
+            if (length(tip - foot) < 0.5F * spacing_) foot = tip;
+        }
+        std::vector<Vec2f> path{end.point};
+        path.insert(path.end(), end.path.begin(), end.path.end());
+        path.back() = foot;
+        std::vector<Vec2f> smooth = path;
+        for (std::size_t n = 1; n + 1 < path.size(); ++n) {
+            smooth[n] = path[n] * 0.5F + (path[n - 1] + path[n + 1]) * 0.25F;
+        }
+        for (std::size_t n = 0; n + 1 < smooth.size(); ++n) {
+            cut_by_cells(end, smooth[n], smooth[n + 1], n + 2 == smooth.size());
+        }
+    }
+
+    /// Segments lie within cells and share their ends on the cells' sides.
+    void cut_by_cells(const LooseEnd& end, Vec2f a, Vec2f b, bool is_last) {
+        std::vector<float> cuts{0.0F, 1.0F};
+        const auto add_cuts = [&](float from, float to) {
+            const float low = std::min(from, to) / spacing_ - 0.5F;
+            const float high = std::max(from, to) / spacing_ - 0.5F;
+            for (float side = std::floor(low) + 1.0F; side < high; side += 1.0F) {
+                cuts.push_back(((side + 0.5F) * spacing_ - from) / (to - from));
+            }
+        };
+        add_cuts(a.x, b.x);
+        add_cuts(a.y, b.y);
+        std::ranges::sort(cuts);
+        Vec2f from = a;
+        for (std::size_t n = 1; n < cuts.size(); ++n) {
+            const bool whole = n + 1 == cuts.size();
+            const Vec2f to = whole ? b : a + (b - a) * cuts[n];
+            if (from == to) continue;
+            Segment segment = lines_[end.fold];
+            if (!end.at_b) segment.left_in_front = !segment.left_in_front;
+            segment.left_in_front_at_b = segment.left_in_front;
+            segment.a = from;
+            segment.b = to;
+            segment.type_at_b = segment.type;
+            segment.left_at_b = segment.left;
+            segment.right_at_b = segment.right;
+            segment.spans_cell = !(is_last && whole);
+            repairs_.bridges.push_back(segment);
+            owners_.push_back(end.fold);
+            from = to;
+        }
+    }
+
+    // Crumbs
+
+    void find_crumbs() {
+        std::vector<float> lengths(lines_.size());
+        for (const std::uint32_t k : folds_) {
+            lengths[root(k)] += length(lines_[k].b - lines_[k].a);
+        }
+        for (std::size_t n = 0; n < owners_.size(); ++n) {
+            const Segment& bridge = repairs_.bridges[n];
+            lengths[root(owners_[n])] += length(bridge.b - bridge.a);
+        }
+        std::vector<std::uint8_t> loose(lines_.size());
+        for (const LooseEnd& end : ends_) loose[root(end.fold)] = 1;
+        const auto is_short = [&](std::uint32_t k) {
+            const std::uint32_t group = root(k);
+            return loose[group] != 0 && attached_[group] == 0 &&
+                   lengths[group] < settings_.crumb_length * width_;
+        };
+        const std::vector<std::uint8_t> deep = deep_groups(is_short);
+        const auto is_crumb = [&](std::uint32_t k) { return is_short(k) && deep[root(k)] == 0; };
+        for (const std::uint32_t k : folds_) {
+            if (is_crumb(k)) repairs_.crumbs.push_back(k);
+        }
+        std::size_t kept = 0;
+        for (std::size_t n = 0; n < owners_.size(); ++n) {
+            if (!is_crumb(owners_[n])) repairs_.bridges[kept++] = repairs_.bridges[n];
+        }
+        repairs_.bridges.resize(kept);
+    }
+
+    /// Which groups have a segment whose two sides are far apart in depth.
+    template <class Ask>
+    std::vector<std::uint8_t> deep_groups(Ask asked) {
+        std::vector<std::uint8_t> deep(lines_.size());
+        std::vector<std::uint32_t> measured;
+        points_.clear();
+        for (const std::uint32_t k : folds_) {
+            if (!asked(k)) continue;
+            measured.push_back(k);
+            const Vec2f middle = (lines_[k].a + lines_[k].b) * 0.5F;
+            const Vec2f aside = left_of(unit(lines_[k].b - lines_[k].a)) * (0.25F * spacing_);
+            points_.push_back(middle + aside);
+            points_.push_back(middle - aside);
+        }
+        samples_.resize(points_.size());
+        if (!points_.empty()) sample_(points_, samples_);
+        for (std::size_t n = 0; n < measured.size(); ++n) {
+            const Sample& a = samples_[2 * n];
+            const Sample& b = samples_[2 * n + 1];
+            const float pixel =
+                length_between(points_[2 * n], points_[2 * n + 1], a) / (0.5F * spacing_);
+            if (a.id != b.id || depth_between(a, b) > settings_.crumb_depth * width_ * pixel) {
+                deep[root(measured[n])] = 1;
+            }
+        }
+        return deep;
+    }
+
+    /// How far two hits are from lying on one surface, however steep that is.
+    static float depth_between(const Sample& a, const Sample& b) {
+        const Vec3f normals = a.normal + b.normal;
+        const float size = ink::length(normals);
+        return size > 0.0F ? std::abs(ink::dot(b.position - a.position, normals)) / size : 0.0F;
+    }
+
+    /// Between two points of the screen, at the depth of a sample.
+    float length_between(Vec2f p, Vec2f q, const Sample& sample) const {
+        const auto at = [&](Vec2f point) {
+            return viewpoint_.origin(point) +
+                   normalize(viewpoint_.direction(point)) * static_cast<double>(sample.t);
+        };
+        return static_cast<float>(ink::length(at(q) - at(p)));
+    }
+
+    std::span<const Segment> lines_;
+    const Viewpoint& viewpoint_;
+    float spacing_, width_;
+    const SampleFunction& sample_;
+    const FoldSettings& settings_;
+    std::vector<std::uint32_t> folds_;  ///< the self-occlusions among the lines
+    std::vector<std::uint32_t> parents_;
+    std::vector<Incidence> incidences_;   ///< of folds at their ends, by place
+    std::vector<std::uint8_t> attached_;  ///< a group: it meets another line
+    std::optional<SegmentSquares> squares_;
+    std::vector<LooseEnd> ends_;
+    std::vector<LooseEnd*> active_;
+    std::vector<Vec2f> centres_, points_;
+    std::vector<Sample> samples_;
+    FoldRepairs repairs_;
+    std::vector<std::uint32_t> owners_;  ///< a bridge: the fold at which it starts
+};
+
+}  // namespace
+
+FoldRepairs mend_folds(std::span<const Segment> lines, const Viewpoint& viewpoint, float spacing,
+                       float width, const SampleFunction& sample, const FoldSettings& settings) {
+    return FoldMender(lines, viewpoint, spacing, width, sample, settings).run();
+}
+
+}  // namespace ink

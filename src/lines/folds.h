@@ -1,0 +1,41 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "lines/segment.h"
+#include "sampling/samples.h"
+
+namespace ink {
+
+/// How self-occlusions are made whole.
+struct FoldSettings {
+    /// A bridge follows the valley of the angle between surface and ray, no steeper than this sine:
+    /// about 10 degrees. Suggestive contours (DeCarlo et al. 2003) run along the same valleys.
+    float most_facing = 0.17F;
+    /// And on both sides the sine rises by this much at least.
+    float least_rise = 0.01F;
+    float longest_bridge = 10.0F;  ///< widths of the line
+    /// To a line of another kind, past the end of which nothing goes on.
+    float longest_to_other = 4.0F;
+    /// A line shorter than this, which meets no other and whose two sides lie less than so many
+    /// widths apart, at a right angle to the surface, is a crumb.
+    float crumb_length = 5.0F;
+    float crumb_depth = 1.0F;
+};
+
+struct FoldRepairs {
+    std::vector<Segment> bridges;
+    std::vector<std::size_t> crumbs;  ///< indices of segments to drop, ascending
+};
+
+/// On a mesh, and on a bumpy surface, the place where a surface hides itself breaks up: between two
+/// of its folds it is merely steep. Joins such pieces of self-occlusions along the steepest way
+/// from one to the next, and finds those that are too short and shallow to mean anything. `lines`
+/// are all of the picture's that are seen directly; `width` is that of a self-occlusion, in pixels.
+/// The result does not depend on their order.
+FoldRepairs mend_folds(std::span<const Segment> lines, const Viewpoint& viewpoint, float spacing,
+                       float width, const SampleFunction& sample,
+                       const FoldSettings& settings = {});
+
+}  // namespace ink

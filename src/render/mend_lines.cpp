@@ -1,0 +1,48 @@
+#include "render/mend_lines.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <utility>
+
+#include "lines/folds.h"
+#include "render/line_finder.h"
+
+namespace ink {
+
+RenderStats mend_lines(const Edges& edges, std::vector<std::vector<ColoredSegment>>& found) {
+    RenderStats stats;
+    const Timer timer(stats.lines_ms);
+    const auto is_fold = [](const ColoredSegment& line) {
+        return line.segment.type == LineType::self_occlusion && line.segment.level == 0;
+    };
+    if (std::ranges::none_of(
+            found, [&](const auto& tile) { return std::ranges::any_of(tile, is_fold); })) {
+        return stats;
+    }
+    std::vector<Segment> lines;
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> places;  // tile, and index within it
+    for (std::uint32_t tile = 0; tile < found.size(); ++tile) {
+        for (std::uint32_t k = 0; k < found[tile].size(); ++k) {
+            const Segment& segment = found[tile][k].segment;
+            if (segment.level != 0 || segment.type == LineType::mesh) continue;
+            lines.push_back(segment);
+            places.emplace_back(tile, k);
+        }
+    }
+    const LineFinder finder(edges, nullptr);
+    const float width = edges.ink.styles[edges.style_of(LineType::self_occlusion, 0)].width_px;
+    const FoldRepairs repairs = mend_folds(
+        lines, edges.viewpoint, 1.0F / static_cast<float>(edges.q), width, finder.more_samples());
+    stats.rays = finder.stats().rays;
+    // Last first, so that the places of the others stay what they are.
+    for (auto k = repairs.crumbs.rbegin(); k != repairs.crumbs.rend(); ++k) {
+        const auto [tile, index] = places[*k];
+        found[tile].erase(found[tile].begin() + index);
+    }
+    for (const Segment& bridge : repairs.bridges) {
+        found[edges.search_tile_at((bridge.a + bridge.b) * 0.5F)].push_back({bridge, {}, {}});
+    }
+    return stats;
+}
+
+}  // namespace ink

@@ -1,0 +1,13 @@
+#pragma once
+
+#include <vector>
+
+#include "render/edges_method.h"
+
+namespace ink {
+
+/// Joins and drops pieces of self-occlusions (mend_folds) among the lines found in all tiles.
+/// Returns what that took.
+RenderStats mend_lines(const Edges& edges, std::vector<std::vector<ColoredSegment>>& found);
+
+}  // namespace ink

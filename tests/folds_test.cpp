@@ -1,0 +1,125 @@
+// Self-occlusions that break up where a surface is merely steep, made whole.
+
+#include "lines/folds.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <random>
+#include <vector>
+
+#include "lines_world.h"
+
+namespace ink::test {
+namespace {
+
+constexpr double kLine = 24.3;  ///< y of the fold
+
+/// A slope that is steepest along y = kLine, where the tangent between it and the ray is `facing`.
+/// In the given ranges of x it hides what lies behind, by up to `depth`; in between it is whole.
+Surface broken_fold(double facing, double depth, std::vector<std::pair<double, double>> ranges) {
+    constexpr double kOpening = 0.015;  // how fast the slope grows less steep to both sides
+    return {1, [=](double x, double y) -> std::optional<Hit> {
+                const double off = y - kLine;
+                double hidden = 0.0;
+                for (const auto& [low, high] : ranges) {
+                    if (off < 0.0 && x > low && x < high) {
+                        hidden = depth * std::min({1.0, x - low, high - x}) * std::exp(off / 60.0);
+                    }
+                }
+                const double slope = 1.0 / (facing + kOpening * std::abs(off));
+                const double rise = std::log(1.0 + kOpening * std::abs(off) / facing) / kOpening;
+                return Hit{std::copysign(rise, off) - hidden, {0.0, slope, 1.0}};
+            }};
+}
+
+struct Mended {
+    Found found;
+    FoldRepairs repairs;
+    std::vector<Segment> lines;  ///< as they are drawn
+};
+
+Mended mend(const World& world, float width) {
+    Mended mended{search(world, 1), {}, {}};
+    Viewpoint viewpoint;
+    viewpoint.dir = {0, 0, -1};
+    viewpoint.parallel = true;
+    viewpoint.origin = {{0, 0, 2}, {world.unit, 0, 0}, {0, -world.unit, 0}};
+    viewpoint.direction = {{0, 0, -1}, {}, {}};
+    mended.repairs = mend_folds(mended.found.segments, viewpoint, 1.0F, width,
+                                [&](std::span<const Vec2f> points, std::span<Sample> out) {
+                                    std::ranges::transform(points, out.begin(), world);
+                                });
+    mended.lines = mended.found.segments;
+    for (auto k = mended.repairs.crumbs.rbegin(); k != mended.repairs.crumbs.rend(); ++k) {
+        mended.lines.erase(mended.lines.begin() + static_cast<std::ptrdiff_t>(*k));
+    }
+    mended.lines.insert(mended.lines.end(), mended.repairs.bridges.begin(),
+                        mended.repairs.bridges.end());
+    return mended;
+}
+
+TEST(BrokenFold, IsOneLineWhereTheSurfaceStaysSteep) {
+    const World world{{broken_fold(0.1, 40.0, {{5, 13}, {20, 31}, {37, 43}})}};
+    const Mended mended = mend(world, 2.0F);
+    ASSERT_FALSE(mended.found.segments.empty());
+    EXPECT_TRUE(mended.repairs.crumbs.empty());
+    ASSERT_FALSE(mended.repairs.bridges.empty());
+    for (const Segment& bridge : mended.repairs.bridges) {
+        EXPECT_EQ(bridge.type, LineType::self_occlusion);
+        EXPECT_LT(length(bridge), 1.5);
+        for (const Vec2f p : {bridge.a, bridge.b}) EXPECT_NEAR(p.y, kLine, 0.15);
+    }
+    // From the first to the last column without a gap, and with no more than two ends.
+    Found whole = mended.found;
+    whole.segments = mended.lines;
+    EXPECT_NEAR(total_length(whole), 38.0, 2.5);
+    EXPECT_EQ(loose_ends(whole).size(), 2U) << list(loose_ends(whole));
+}
+
+TEST(BrokenFold, StaysBrokenWhereTheSurfaceFacesTheViewer) {
+    const Mended mended = mend({{broken_fold(0.4, 40.0, {{5, 13}, {20, 31}})}}, 2.0F);
+    EXPECT_TRUE(mended.repairs.bridges.empty());
+    EXPECT_TRUE(mended.repairs.crumbs.empty());
+}
+
+TEST(BrokenFold, IsNotBridgedOverALongWay) {
+    EXPECT_TRUE(
+        mend({{broken_fold(0.1, 40.0, {{3, 10}, {36, 45}})}}, 2.0F).repairs.bridges.empty());
+}
+
+TEST(CrumbOfAFold, IsDroppedIfShortAndShallow) {
+    const auto left = [](double depth, double to, float width) {
+        return mend({{broken_fold(0.1, depth, {{20, to}})}}, width).lines.size();
+    };
+    EXPECT_EQ(left(18.0, 26, 2.0F), 0U);
+    EXPECT_GT(left(18.0, 26, 0.5F), 2U);   // long for its width
+    EXPECT_GT(left(100.0, 26, 2.0F), 2U);  // deep
+    EXPECT_GT(left(18.0, 40, 2.0F), 15U);  // long
+}
+
+TEST(BrokenFold, IsMendedAlikeWhateverTheOrderOfItsPieces) {
+    const World world{{broken_fold(0.1, 40.0, {{5, 13}, {20, 31}, {37, 43}})}};
+    const Mended mended = mend(world, 2.0F);
+    std::vector<Segment> shuffled = mended.found.segments;
+    std::ranges::shuffle(shuffled, std::mt19937(1));
+    Viewpoint viewpoint;
+    viewpoint.dir = {0, 0, -1};
+    viewpoint.parallel = true;
+    viewpoint.origin = {{0, 0, 2}, {world.unit, 0, 0}, {0, -world.unit, 0}};
+    viewpoint.direction = {{0, 0, -1}, {}, {}};
+    const FoldRepairs again = mend_folds(shuffled, viewpoint, 1.0F, 2.0F,
+                                         [&](std::span<const Vec2f> points, std::span<Sample> out) {
+                                             std::ranges::transform(points, out.begin(), world);
+                                         });
+    ASSERT_EQ(again.bridges.size(), mended.repairs.bridges.size());
+    for (std::size_t k = 0; k < again.bridges.size(); ++k) {
+        EXPECT_EQ(again.bridges[k].a, mended.repairs.bridges[k].a);
+        EXPECT_EQ(again.bridges[k].b, mended.repairs.bridges[k].b);
+    }
+}
+
+}  // namespace
+}  // namespace ink::test
