@@ -8,6 +8,9 @@
 #include <cmath>
 #include <memory>
 #include <numbers>
+#include <numeric>
+#include <random>
+#include <string>
 #include <vector>
 
 #include "camera/camera.h"
@@ -19,13 +22,16 @@ namespace {
 /// A scene, a camera, and what the screen tracer and brute force see through it.
 class Seen {
   public:
-    Seen(std::vector<Object> objects, const ViewSettings& view, Size size)
+    using MakeOracle = std::unique_ptr<Tracer> (*)(const Scene&);
+
+    Seen(std::vector<Object> objects, const ViewSettings& view, Size size,
+         MakeOracle make_oracle = make_brute_force_tracer)
         : scene_(std::move(objects)),
           clusters_(scene_),
           camera_(scene_, view, size),
           size_(size),
-          frame_(make_screen_tracer(clusters_, camera_.projection(), 1)),
-          oracle_(make_brute_force_tracer(scene_)) {
+          frame_(make_screen_tracer(clusters_, camera_.projection())),
+          oracle_(make_oracle(scene_)) {
         EXPECT_TRUE(camera_.projection().sees_all());
     }
 
@@ -67,6 +73,18 @@ class Seen {
         tracer->enter(area);
         std::vector<HitPacket> hits(points.size());
         tracer->intersect(points, rays(points), hits);
+        return hits;
+    }
+    /// Of points as `pixels` gives them.
+    std::vector<HitPacket> trace_raster(const std::vector<PointPacket>& points) const {
+        const auto tracer = frame_->tile_tracer();
+        tracer->enter(whole());
+        std::vector<std::uint32_t> cells(points.size());
+        std::iota(cells.begin(), cells.end(), 0U);
+        std::vector<HitPacket> hits(points.size());
+        tracer->intersect(
+            {0, 0, kBlockSide, size_.width / kBlockSide, size_.height / kBlockSide, cells}, points,
+            rays(points), hits);
         return hits;
     }
     std::vector<HitPacket> trace_brute_force(const std::vector<PointPacket>& points) const {
@@ -338,17 +356,232 @@ TEST(ScreenTracer, LeavesInactiveRaysAlone) {
     }
 }
 
+// ---- Glyphs and hexahedra ----
+
+/// Shapes are met by closed forms in double precision (shape_intersection.h), which tests of their
+/// own compare with brute force.
+std::unique_ptr<Tracer> make_double_tracer(const Scene& scene) { return make_embree_tracer(scene); }
+
+struct NamedShape {
+    std::string name;
+    UnitShape shape;
+};
+
+class EveryScreenShape : public testing::TestWithParam<NamedShape> {};
+
+INSTANTIATE_TEST_SUITE_P(
+    Shapes, EveryScreenShape, testing::ValuesIn([] {
+        using enum GlyphKind;
+        return std::vector<NamedShape>{
+            {"Ellipsoid", {ellipsoid}},   {"Box", {box}},
+            {"Cylinder", {frustum, 1.0}}, {"Tube", {frustum, 1.0, 1.0, false}},
+            {"Cone", {frustum, 0.0}},     {"OpenCone", {frustum, 0.3, 1.0, false}},
+            {"Frustum", {frustum, 0.4}},  {"Disc", {disc}},
+            {"Rectangle", {rectangle}}};
+    }()),
+    [](const auto& shape) { return shape.param.name; });
+
+Vec3f random_vector(std::mt19937& random) {
+    return (uniform_point(random) - Vec3f{0.5F, 0.5F, 0.5F}) * 2.0F;
+}
+
+/// Glyphs of random shape and shear, `size` long at most, each of its volume's cube root at least a
+/// tenth of that.
+Object random_glyphs(const UnitShape& shape, int count, double size, std::mt19937& random) {
+    Glyphs glyphs{shape, {}, {}, {}};
+    while (glyphs.placements.size() < static_cast<std::size_t>(count)) {
+        const auto scale = static_cast<float>(size * std::pow(10.0, -uniform(random)));
+        const Placement place{random_vector(random) * scale, random_vector(random) * scale,
+                              random_vector(random) * scale, random_vector(random)};
+        const float volume = dot(place.x_axis, cross(place.y_axis, place.z_axis));
+        if (std::abs(volume) < 0.05F * scale * scale * scale) continue;
+        glyphs.placements.push_back(place);
+    }
+    Object object;
+    object.kind = ObjectKind::shape;
+    object.shape = std::move(glyphs);
+    return object;
+}
+
+TEST_P(EveryScreenShape, IsHitWhereItsEquationSays) {
+    std::mt19937 random(11);
+    for (const double fov : {0.0, 2.0, 30.0, 70.0}) {
+        ViewSettings view;
+        if (fov == 0.0) view.orthographic = 0.0;
+        if (fov != 0.0) view.fov_deg = fov;
+        const Seen seen({random_glyphs(GetParam().shape, 100, 0.4, random)}, view, {192, 160},
+                        make_double_tracer);
+        expect_same_hits(seen, seen.random_points(3, 2000));
+    }
+}
+
+TEST_P(EveryScreenShape, IsHitWhereItsEquationSaysAtAnySize) {
+    std::mt19937 random(12);
+    std::vector<Object> objects;
+    for (const double size : {1.0, 0.1, 1e-2, 1e-3}) {
+        objects.push_back(random_glyphs(GetParam().shape, 60, size, random));
+    }
+    const Seen seen(std::move(objects), {}, {512, 512}, make_double_tracer);
+    expect_same_hits(seen, seen.random_points(4, 4000));
+}
+
+TEST_P(EveryScreenShape, IsSeenFromJustBeforeItAndFromFar) {
+    for (const double distance : {2.2, 1e4}) {
+        ViewSettings view;
+        view.eye = Vec3d{0.3 * distance, 0.2 * distance, distance};
+        view.look_at = Vec3d{0, 0, 0};
+        view.fov_deg = distance < 10.0 ? 70.0 : 0.015;
+        Object object;
+        object.kind = ObjectKind::shape;
+        object.shape = Glyphs{GetParam().shape, {Placement{}}, {}, {}};
+        const Seen seen({std::move(object)}, view, kSmall, make_double_tracer);
+        expect_same_hits(seen, seen.random_points(5, 1000));
+    }
+}
+
+Hexahedra::Corners box_corners(Vec3f lower, Vec3f upper) {
+    const auto [x, y, z] = lower;
+    const auto [u, v, w] = upper;
+    return {
+        {{x, y, z}, {u, y, z}, {u, v, z}, {x, v, z}, {x, y, w}, {u, y, w}, {u, v, w}, {x, v, w}}};
+}
+
+Object hexahedron_object(std::vector<Hexahedra::Corners> corners) {
+    Object object;
+    object.kind = ObjectKind::shape;
+    object.shape = Hexahedra{std::move(corners), {}, {}};
+    return object;
+}
+
+TEST(ScreenTracer, HitsHexahedraWhereTheirFacesAre) {
+    std::mt19937 random(13);
+    std::vector<Hexahedra::Corners> solids;
+    for (int i = 0; i < 100; ++i) {
+        const Vec3f at = random_vector(random);
+        auto corners = box_corners(at, at + Vec3f{0.2F, 0.3F, 0.15F});
+        const Vec3f shear = random_vector(random) * 0.4F;
+        for (Vec3f& corner : corners) corner = corner + shear * (corner.z - at.z);
+        solids.push_back(corners);
+    }
+    const Seen seen({hexahedron_object(std::move(solids))}, {}, kSmall, make_double_tracer);
+    expect_same_hits(seen, seen.random_points(6, 2000));
+}
+
+TEST(ScreenTracer, GivesGlyphsTheSameBitsOnEveryInstructionSet) {
+    std::mt19937 random(14);
+    std::vector<Object> objects;
+    for (const GlyphKind kind : {GlyphKind::ellipsoid, GlyphKind::box, GlyphKind::frustum,
+                                 GlyphKind::disc, GlyphKind::rectangle}) {
+        objects.push_back(random_glyphs({.kind = kind, .a = 0.5}, 60, 0.3, random));
+    }
+    const Seen seen(std::move(objects), {}, kSmall);
+    const auto points = seen.pixels();
+    const auto native = seen.trace(points);
+    for (const std::int64_t target : {HWY_SSSE3, HWY_SSE4, HWY_AVX2, HWY_AVX3}) {
+        hwy::SetSupportedTargetsForTest(0);
+        if ((hwy::SupportedTargets() & target) == 0) continue;
+        hwy::SetSupportedTargetsForTest(target);
+        const auto hits = seen.trace(points);
+        for (std::size_t k = 0; k < points.size(); ++k) {
+            for (int i = 0; i < kLanes; ++i) expect_same_bits(hits[k], i, native[k], i);
+        }
+    }
+    hwy::SetSupportedTargetsForTest(0);
+}
+
+// ---- Rasters ----
+
+TEST(ScreenTracer, GivesRastersTheHitsOfTheirPoints) {
+    std::mt19937 random(15);
+    std::vector<Object> objects = random_objects(18, 300, 300);
+    objects.push_back(random_glyphs({.kind = GlyphKind::box}, 60, 0.3, random));
+    const Seen seen(std::move(objects), {}, kSmall);
+    const auto points = seen.pixels();
+    const auto expected = seen.trace(points);
+    const auto hits = seen.trace_raster(points);
+    for (std::size_t k = 0; k < points.size(); ++k) {
+        for (int i = 0; i < kLanes; ++i) expect_same_bits(hits[k], i, expected[k], i);
+    }
+}
+
+// ---- Coincident surfaces ----
+
+/// Every hit belongs to the lowest object, and there to one of its first `primitives`.
+void expect_first_wins(const Seen& seen, std::uint32_t primitives) {
+    int hits = 0;
+    for (const HitPacket& packet : seen.trace(seen.random_points(7, 2000))) {
+        for (int i = 0; i < kLanes; ++i) {
+            if (packet.object[i] == kNoObject) continue;
+            ++hits;
+            EXPECT_EQ(packet.object[i], 0U);
+            EXPECT_LT(packet.primitive[i], primitives);
+        }
+    }
+    EXPECT_GT(hits, 1000);
+}
+
+ViewSettings oblique_view() {
+    ViewSettings view;
+    view.eye = Vec3d{3.1, 2.3, 4.7};
+    view.look_at = Vec3d{0.1, 0.05, -0.02};
+    return view;
+}
+
+TEST(ScreenTracer, PrefersTheFirstOfTrianglesThatAreThereTwice) {
+    const std::vector<Vec3f> corners{
+        {-1, -0.9F, 0.1F}, {1, -1, 0.3F}, {0.9F, 1, -0.2F}, {-1, 1.1F, 0.17F}};
+    const std::vector<Mesh::Triangle> once{{0, 1, 2}, {0, 2, 3}};
+    for (const Mesh::Triangle& order : {Mesh::Triangle{0, 1, 2}, {1, 2, 0}, {2, 1, 0}, {1, 0, 2}}) {
+        std::vector<Mesh::Triangle> twice = once;
+        for (const Mesh::Triangle& triangle : once) {
+            twice.push_back({triangle[order[0]], triangle[order[1]], triangle[order[2]]});
+        }
+        expect_first_wins(Seen({mesh_object(corners, twice)}, oblique_view(), {512, 512}), 2);
+    }
+}
+
+TEST(ScreenTracer, PrefersTheFirstOfObjectsThatShareAFace) {
+    const auto square = [](const std::vector<Mesh::Triangle>& triangles) {
+        return mesh_object({{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}}, triangles);
+    };
+    // Cut along the other diagonal.
+    expect_first_wins(Seen({square({{0, 1, 2}, {0, 2, 3}}), square({{1, 2, 3}, {1, 3, 0}})},
+                           oblique_view(), {512, 512}),
+                      2);
+    // Twenty of them: more than a depth can be set back by.
+    std::vector<Object> stack;
+    for (int i = 0; i < 20; ++i) {
+        stack.push_back(i % 2 == 0 ? square({{0, 1, 2}, {0, 2, 3}})
+                                   : square({{1, 2, 3}, {1, 3, 0}}));
+    }
+    expect_first_wins(Seen(std::move(stack), oblique_view(), {512, 512}), 2);
+}
+
+TEST(ScreenTracer, PrefersTheFirstOfBoxesThatFillTheSamePlace) {
+    Object object;
+    object.kind = ObjectKind::shape;
+    Placement turned;
+    turned.x_axis = {0, 1, 0};
+    turned.y_axis = {-1, 0, 0};
+    object.shape = Glyphs{{GlyphKind::box}, {Placement{}, turned, Placement{}}, {}, {}};
+    expect_first_wins(Seen({object}, oblique_view(), {512, 512}), 1);
+    const Object solid = hexahedron_object({box_corners({-1, -1, -1}, {1, 1, 1})});
+    expect_first_wins(Seen({object, solid}, oblique_view(), {512, 512}), 1);
+    expect_first_wins(Seen({solid, object}, oblique_view(), {512, 512}), 1);
+}
+
 TEST(SceneTracer, MergesWhatOnlyEmbreeTracesByDepth) {
     std::vector<Object> objects = random_objects(12, 60, 60);
     std::mt19937 random(3);
-    Glyphs boxes{.shape = {.kind = GlyphKind::box}, .placements = {}, .colors = {}, .parts = {}};
+    Glyphs tori{
+        .shape = {.kind = GlyphKind::torus, .a = 0.4}, .placements = {}, .colors = {}, .parts = {}};
     for (int i = 0; i < 60; ++i) {
-        boxes.placements.push_back(
+        tori.placements.push_back(
             {{0.1F, 0, 0}, {0, 0.05F, 0.05F}, {0, -0.05F, 0.05F}, uniform_point(random)});
     }
     Object object;
     object.kind = ObjectKind::shape;
-    object.shape = std::move(boxes);
+    object.shape = std::move(tori);
     objects.insert(objects.begin() + 1, std::move(object));
     const Scene scene(std::move(objects));
     const Camera camera(scene, {}, kSmall);

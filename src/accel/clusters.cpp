@@ -1,6 +1,7 @@
 #include "accel/clusters.h"
 
 #include <algorithm>
+#include <array>
 #include <utility>
 #include <variant>
 
@@ -31,76 +32,162 @@ std::uint64_t morton_code(Vec3f p) {
     return spread(cell(p.x)) | spread(cell(p.y)) << 1U | spread(cell(p.z)) << 2U;
 }
 
-std::size_t count_of(const Spheres& shape) { return shape.spheres.size(); }
-std::size_t count_of(const Mesh& shape) { return shape.triangles.size(); }
-
-Bounds3f bounds_of(const Spheres& shape, std::size_t i) {
-    Bounds3f bounds;
-    bounds.add(shape.spheres[i].centre, shape.spheres[i].radius);
-    return bounds;
-}
-
-Bounds3f bounds_of(const Mesh& shape, std::size_t i) {
-    Bounds3f bounds;
-    for (const std::uint32_t corner : shape.triangles[i]) bounds.add(shape.vertices[corner]);
-    return bounds;
-}
-
 void put(Points& points, int lane, Vec3f p) {
     points.x[lane] = p.x;
     points.y[lane] = p.y;
     points.z[lane] = p.z;
 }
 
-void put(const Spheres& shape, std::uint32_t i, int lane, SphereLanes& lanes) {
-    put(lanes.centre, lane, shape.spheres[i].centre);
-    lanes.radius[lane] = shape.spheres[i].radius;
+void put(TriangleLanes& lanes, int lane, Vec3f a, Vec3f b, Vec3f c) {
+    put(lanes.a, lane, a);
+    put(lanes.b, lane, b);
+    put(lanes.c, lane, c);
 }
 
-void put(const Mesh& shape, std::uint32_t i, int lane, TriangleLanes& lanes) {
-    const auto& [a, b, c] = shape.triangles[i];
-    put(lanes.a, lane, shape.vertices[a]);
-    put(lanes.b, lane, shape.vertices[b]);
-    put(lanes.c, lane, shape.vertices[c]);
+// What is sorted into clusters: its parts, their bounds, the primitive that each belongs to, and
+// how they lie side by side.
+
+struct SphereParts {
+    const Spheres& shape;
+    static constexpr ClusterKind kKind = ClusterKind::spheres;
+
+    std::size_t count() const { return shape.spheres.size(); }
+    std::uint32_t primitive(std::uint32_t i) const { return i; }
+    Bounds3f bounds(std::size_t i) const {
+        Bounds3f bounds;
+        bounds.add(shape.spheres[i].centre, shape.spheres[i].radius);
+        return bounds;
+    }
+    void put(std::uint32_t i, int lane, SphereLanes& lanes) const {
+        ink::put(lanes.centre, lane, shape.spheres[i].centre);
+        lanes.radius[lane] = shape.spheres[i].radius;
+    }
+};
+
+struct TriangleParts {
+    const Mesh& mesh;
+    static constexpr ClusterKind kKind = ClusterKind::triangles;
+
+    std::size_t count() const { return mesh.triangles.size(); }
+    std::uint32_t primitive(std::uint32_t i) const { return i; }
+    Bounds3f bounds(std::size_t i) const {
+        Bounds3f bounds;
+        for (const std::uint32_t corner : mesh.triangles[i]) bounds.add(mesh.vertices[corner]);
+        return bounds;
+    }
+    void put(std::uint32_t i, int lane, TriangleLanes& lanes) const {
+        const auto& [a, b, c] = mesh.triangles[i];
+        ink::put(lanes, lane, mesh.vertices[a], mesh.vertices[b], mesh.vertices[c]);
+    }
+};
+
+struct SolidParts {
+    const Hexahedra& shape;
+    static constexpr ClusterKind kKind = ClusterKind::solids;
+    static constexpr std::uint32_t kParts = 12;  ///< triangles of a hexahedron
+
+    std::size_t count() const { return shape.corners.size() * kParts; }
+    std::uint32_t primitive(std::uint32_t i) const { return i / kParts; }
+    std::array<Vec3f, 3> triangle(std::size_t i) const {
+        const Hexahedra::Corners& corners = shape.corners[i / kParts];
+        const auto& [a, b, c, d] = Hexahedra::kFaces[i % kParts / 2];
+        if (i % 2 == 0) return {corners[a], corners[b], corners[c]};
+        return {corners[a], corners[c], corners[d]};
+    }
+    Bounds3f bounds(std::size_t i) const {
+        Bounds3f bounds;
+        for (const Vec3f corner : triangle(i)) bounds.add(corner);
+        return bounds;
+    }
+    void put(std::uint32_t i, int lane, SolidLanes& lanes) const {
+        const auto [p, q, r] = triangle(i);
+        ink::put(lanes.triangles, lane, p, q, r);
+        const Hexahedra::Corners& corners = shape.corners[i / kParts];
+        const auto& [a, b, c, d] = Hexahedra::kFaces[i % kParts / 2];
+        ink::put(lanes.normal, lane,
+                 to_float(cross(to_double(corners[c]) - to_double(corners[a]),
+                                to_double(corners[d]) - to_double(corners[b]))));
+    }
+};
+
+struct GlyphParts {
+    const Glyphs& shape;
+    static constexpr ClusterKind kKind = ClusterKind::glyphs;
+
+    std::size_t count() const { return shape.placements.size(); }
+    std::uint32_t primitive(std::uint32_t i) const { return i; }
+    Bounds3f bounds(std::size_t i) const { return glyph_bounds(shape.shape, shape.placements[i]); }
+    void put(std::uint32_t i, int lane, GlyphLanes& lanes) const {
+        const Placement& placement = shape.placements[i];
+        ink::put(lanes.origin, lane, placement.origin);
+        ink::put(lanes.x_axis, lane, placement.x_axis);
+        ink::put(lanes.y_axis, lane, placement.y_axis);
+        ink::put(lanes.z_axis, lane, placement.z_axis);
+    }
+};
+
+void put(BoxLanes& lanes, int lane, const Bounds3f& box) {
+    put(lanes.lower, lane, box.lower);
+    put(lanes.upper, lane, box.upper);
 }
 
-constexpr ClusterKind kind_of(const Spheres& /*shape*/) { return ClusterKind::spheres; }
-constexpr ClusterKind kind_of(const Mesh& /*shape*/) { return ClusterKind::triangles; }
+Bounds3f union_of(const BoxLanes& boxes) {
+    const auto least = [](const Lanes<float>& v) { return *std::ranges::min_element(v); };
+    const auto most = [](const Lanes<float>& v) { return *std::ranges::max_element(v); };
+    return {{least(boxes.lower.x), least(boxes.lower.y), least(boxes.lower.z)},
+            {most(boxes.upper.x), most(boxes.upper.y), most(boxes.upper.z)}};
+}
 
-template <class Primitives, class PrimitiveLanes>
-void append(const Primitives& shape, std::uint32_t object, std::vector<PrimitiveLanes>& packets,
-            Clusters& all) {
-    const std::size_t count = count_of(shape);
+constexpr std::size_t packets_for(std::size_t count) { return (count + kLanes - 1) / kLanes; }
+
+/// `bounds(i)` gives the boxes of a level; unused lanes repeat the last one.
+template <class BoundsOf>
+void add_level(std::size_t count, const BoundsOf& bounds, std::vector<Clusters::Level>& levels) {
+    Clusters::Level level{std::vector<BoxLanes>(packets_for(count)), count};
+    parallel_ranges(level.boxes.size(), kGrain / kLanes, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t k = begin; k < end; ++k) {
+            for (int lane = 0; lane < kLanes; ++lane) {
+                const std::size_t i = k * kLanes + static_cast<std::size_t>(lane);
+                put(level.boxes[k], lane, bounds(std::min(i, count - 1)));
+            }
+        }
+    });
+    levels.push_back(std::move(level));
+}
+
+template <class Parts, class PartLanes>
+void append(const Parts& parts, std::uint32_t object, std::vector<PartLanes>& packets,
+            Clusters& all, std::vector<Bounds3f>& boxes) {
+    const std::size_t count = parts.count();
     std::vector<std::pair<std::uint64_t, std::uint32_t>> keys(count);
     parallel_ranges(count, kGrain, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
-            keys[i] = {morton_code(bounds_of(shape, i).centre()), static_cast<std::uint32_t>(i)};
+            keys[i] = {morton_code(parts.bounds(i).centre()), static_cast<std::uint32_t>(i)};
         }
     });
     parallel_sort(keys);
 
     const std::size_t first = all.order.size();
     const std::size_t first_cluster = all.clusters.size();
-    const std::size_t clusters = (count + kLanes - 1) / kLanes;
+    const std::size_t clusters = packets_for(count);
     all.order.resize(first + count);
     all.clusters.resize(first_cluster + clusters);
+    boxes.resize(first_cluster + clusters);
     const std::size_t first_packet = packets.size();
     packets.resize(first_packet + clusters);
     parallel_ranges(clusters, kGrain / kLanes, [&](std::size_t begin, std::size_t end) {
         for (std::size_t c = begin; c < end; ++c) {
-            Cluster& cluster = all.clusters[first_cluster + c];
             const std::size_t from = c * kLanes;
             const std::size_t to = std::min(from + kLanes, count);
-            cluster.object = object;
-            cluster.first = static_cast<std::uint32_t>(first + from);
-            cluster.packet = static_cast<std::uint32_t>(first_packet + c);
-            cluster.count = static_cast<std::uint8_t>(to - from);
-            cluster.kind = kind_of(shape);
+            all.clusters[first_cluster + c] = {object, static_cast<std::uint32_t>(first + from),
+                                               static_cast<std::uint32_t>(first_packet + c),
+                                               static_cast<std::uint8_t>(to - from), Parts::kKind};
             for (int lane = 0; lane < kLanes; ++lane) {
                 const std::size_t i = std::min(from + static_cast<std::size_t>(lane), to - 1);
-                all.order[first + i] = keys[i].second;
-                cluster.bounds.add(bounds_of(shape, keys[i].second));
-                put(shape, keys[i].second, lane, packets[first_packet + c]);
+                const std::uint32_t part = keys[i].second;
+                all.order[first + i] = parts.primitive(part);
+                boxes[first_cluster + c].add(parts.bounds(part));
+                parts.put(part, lane, packets[first_packet + c]);
             }
         }
     });
@@ -108,11 +195,46 @@ void append(const Primitives& shape, std::uint32_t object, std::vector<Primitive
 
 }  // namespace
 
-Clusters::Clusters(const Scene& scene) {
+bool has_screen_form(const Shape& shape) {
+    const auto* glyphs = std::get_if<Glyphs>(&shape);
+    if (glyphs == nullptr) return true;
+    switch (glyphs->shape.kind) {
+        case GlyphKind::ellipsoid:
+        case GlyphKind::box:
+        case GlyphKind::frustum:
+        case GlyphKind::disc:
+        case GlyphKind::rectangle: return true;
+        case GlyphKind::torus:
+        case GlyphKind::superellipsoid:
+        case GlyphKind::gaussian:
+        case GlyphKind::waves: return false;
+    }
+    return false;
+}
+
+Clusters::Clusters(const Scene& scene) : unit_shapes(scene.objects().size()) {
+    std::vector<Bounds3f> boxes;
     for (std::uint32_t i = 0; i < scene.objects().size(); ++i) {
         const Shape& shape = scene.objects()[i].shape;
-        if (const auto* balls = std::get_if<Spheres>(&shape)) append(*balls, i, spheres, *this);
-        if (const auto* mesh = std::get_if<Mesh>(&shape)) append(*mesh, i, triangles, *this);
+        if (!has_screen_form(shape)) continue;
+        if (const auto* balls = std::get_if<Spheres>(&shape)) {
+            append(SphereParts{*balls}, i, spheres, *this, boxes);
+        } else if (const auto* mesh = std::get_if<Mesh>(&shape)) {
+            append(TriangleParts{*mesh}, i, triangles, *this, boxes);
+        } else if (const auto* hexahedra = std::get_if<Hexahedra>(&shape)) {
+            append(SolidParts{*hexahedra}, i, solids, *this, boxes);
+        } else if (const auto* placed = std::get_if<Glyphs>(&shape)) {
+            append(GlyphParts{*placed}, i, glyphs, *this, boxes);
+            unit_shapes[i] = placed->shape;
+        }
+    }
+    if (boxes.empty()) return;
+    add_level(
+        boxes.size(), [&](std::size_t i) { return boxes[i]; }, levels);
+    while (levels.back().boxes.size() > 1) {
+        const std::vector<BoxLanes>& below = levels.back().boxes;
+        add_level(
+            below.size(), [&](std::size_t i) { return union_of(below[i]); }, levels);
     }
 }
 

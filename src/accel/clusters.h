@@ -9,11 +9,10 @@
 
 namespace ink {
 
-enum class ClusterKind : std::uint8_t { spheres, triangles };
+enum class ClusterKind : std::uint8_t { spheres, triangles, solids, glyphs };
 
 /// Up to kLanes primitives of one object that lie close together.
 struct Cluster {
-    Bounds3f bounds;
     std::uint32_t object = 0;
     std::uint32_t first = 0;   ///< into Clusters::order
     std::uint32_t packet = 0;  ///< into the packets of its kind
@@ -35,14 +34,42 @@ struct SphereLanes {
 struct TriangleLanes {
     Points a, b, c;
 };
+/// Triangles that faces of hexahedra are cut into.
+struct SolidLanes {
+    TriangleLanes triangles;
+    Points normal;  ///< of the face, outward
+};
+struct GlyphLanes {
+    Points origin, x_axis, y_axis, z_axis;
+};
 
-/// The scene's spheres and triangles in clusters along a Morton curve, object by object, so that
-/// clusters that follow each other are near each other too.
+/// Sixteen boxes, corner by corner.
+struct BoxLanes {
+    Points lower, upper;
+};
+
+/// Whether camera rays can be traced by what the screen shows of a shape.
+bool has_screen_form(const Shape& shape);
+
+/// The primitives of the scene's shapes with screen forms in clusters along a Morton curve, object
+/// by object, so that clusters that follow each other are near each other too, and a tree of boxes
+/// above them.
 struct Clusters {
     std::vector<Cluster> clusters;
     std::vector<std::uint32_t> order;  ///< primitives, cluster by cluster
     std::vector<SphereLanes> spheres;
     std::vector<TriangleLanes> triangles;
+    std::vector<SolidLanes> solids;
+    std::vector<GlyphLanes> glyphs;
+    std::vector<UnitShape> unit_shapes;  ///< of objects that are glyphs; an entry an object
+
+    /// Boxes of the clusters; then boxes whose lanes bound a packet of the level below each, up to
+    /// a single packet.
+    struct Level {
+        std::vector<BoxLanes> boxes;
+        std::size_t count = 0;  ///< boxes that are used
+    };
+    std::vector<Level> levels;
 
     Clusters() = default;
     explicit Clusters(const Scene& scene);

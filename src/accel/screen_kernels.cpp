@@ -16,22 +16,37 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 using Floats = hn::CappedTag<float, kLanes>;
 using Indices = hn::Rebind<std::uint32_t, Floats>;
+using Integers = hn::Rebind<std::int32_t, Floats>;
 constexpr Floats kFloats;
 constexpr Indices kIndices;
+constexpr Integers kIntegers;
 constexpr int kStep = static_cast<int>(hn::MaxLanes(Floats()));
+using Vector = hn::Vec<Floats>;
+using Mask = hn::Mask<Floats>;
 
 template <class T>
 HWY_INLINE auto load(const Lanes<T>& lanes, int first) {
     return hn::Load(hn::CappedTag<T, kLanes>(), lanes.data() + first);
 }
 
-HWY_INLINE auto set(float value) { return hn::Set(kFloats, value); }
+HWY_INLINE Vector set(float value) { return hn::Set(kFloats, value); }
 
-template <class Mask>
 HWY_INLINE LaneBits bits(Mask mask) {
     alignas(8) std::uint8_t bytes[8] = {};
     hn::StoreMaskBits(kFloats, mask, bytes);
     return bytes[0] | static_cast<LaneBits>(bytes[1]) << 8U;
+}
+
+HWY_INLINE float least(const Lanes<float>& lanes) {
+    auto all = load(lanes, 0);
+    for (int i = kStep; i < kLanes; i += kStep) all = hn::Min(all, load(lanes, i));
+    return hn::GetLane(hn::MinOfLanes(kFloats, all));
+}
+
+HWY_INLINE float most(const Lanes<float>& lanes) {
+    auto all = load(lanes, 0);
+    for (int i = kStep; i < kLanes; i += kStep) all = hn::Max(all, load(lanes, i));
+    return hn::GetLane(hn::MaxOfLanes(kFloats, all));
 }
 
 HWY_INLINE LaneBits overlap_lanes(const BoundsPacket& bounds, const Window& window) {
@@ -51,103 +66,406 @@ LaneBits find_overlap(const BoundsPacket& bounds, const Window& window) {
     return overlap_lanes(bounds, window);
 }
 
-/// Takes the hits that lie in front of what there is.
-template <class Depth, class Mask>
-HWY_INLINE bool keep_nearer(Depth depth, Mask covered, std::uint32_t winner, int i, Front& front) {
+void find_union(const BoundsPacket& of, BoundsPacket& packet, int lane) {
+    packet.left[lane] = least(of.left);
+    packet.top[lane] = least(of.top);
+    packet.right[lane] = most(of.right);
+    packet.bottom[lane] = most(of.bottom);
+    packet.depth[lane] = least(of.depth);
+}
+
+// ---- The nearest hit ----
+
+/// What a primitive is called while it is tested.
+struct Name {
+    const ScreenPacket* packets;
+    std::uint32_t winner;
+
+    std::uint64_t rank(std::uint32_t of) const {
+        const ScreenPacket& packet = packets[of / kLanes];
+        return static_cast<std::uint64_t>(packet.object) << 32U |
+               packet.primitive[static_cast<int>(of % kLanes)];
+    }
+};
+
+/// Lanes where two surfaces coincide: the lower one counts.
+HWY_INLINE void settle(Vector depth, Mask around, Name name, int i, Front& front) {
+    alignas(64) float depths[kStep];
+    hn::Store(depth, kFloats, depths);
+    for (LaneBits lanes = bits(around); lanes != 0; lanes &= lanes - 1) {
+        const int lane = std::countr_zero(lanes);
+        if (name.rank(name.winner) >= name.rank(front.winner[i + lane])) continue;
+        front.depth[i + lane] = depths[lane];
+        front.winner[i + lane] = name.winner;
+    }
+}
+
+/// Takes the hits that lie in front of what there is; `slack`: how near to it they count as one
+/// with it.
+HWY_INLINE bool keep_nearer(Vector depth, Mask covered, float slack, Name name, int i,
+                            Front& front) {
     const auto before = load(front.depth, i);
-    const auto hit = hn::And(covered, hn::Lt(depth, before));
+    const auto hit = hn::And(covered, hn::Le(depth, hn::Add(before, set(slack))));
     if (hn::AllFalse(kFloats, hit)) return false;
-    hn::Store(hn::IfThenElse(hit, depth, before), kFloats, front.depth.data() + i);
-    const auto winners = hn::IfThenElse(hn::RebindMask(kIndices, hit), hn::Set(kIndices, winner),
-                                        load(front.winner, i));
+    const auto nearer = hn::And(hit, hn::Lt(depth, hn::Sub(before, set(slack))));
+    const auto around = hn::AndNot(nearer, hit);
+    hn::Store(hn::IfThenElse(nearer, depth, before), kFloats, front.depth.data() + i);
+    const auto winners = hn::IfThenElse(hn::RebindMask(kIndices, nearer),
+                                        hn::Set(kIndices, name.winner), load(front.winner, i));
     hn::Store(winners, kIndices, front.winner.data() + i);
+    if (HWY_UNLIKELY(!hn::AllFalse(kFloats, around))) settle(depth, around, name, i, front);
     return true;
 }
 
-HWY_INLINE void update_farthest(Front& front) {
-    auto most = load(front.depth, 0);
-    for (int i = kStep; i < kLanes; i += kStep) most = hn::Max(most, load(front.depth, i));
-    front.window.farthest = hn::GetLane(hn::MaxOfLanes(kFloats, most));
-}
-
-HWY_INLINE void intersect_sphere(float origin_step, float slope_step, const SphereForm& form,
-                                 std::uint32_t winner, Front& front) {
-    const auto u = set(form.u);
-    const auto v = set(form.v);
-    const auto a = set(form.a);
-    const auto b = set(form.b);
-    const auto c = set(form.c);
-    const auto f = set(form.f);
-    const auto x = set(form.x);
-    const auto y = set(form.y);
-    const auto z = set(form.z);
-    const auto origin = set(origin_step);
-    const auto slope = set(slope_step);
-    bool changed = false;
-    for (int i = 0; i < kLanes; i += kStep) {
-        const auto qx = load(front.x, i);
-        const auto qy = load(front.y, i);
-        const auto dx = hn::Sub(qx, u);
-        const auto dy = hn::Sub(qy, v);
-        const auto across = hn::Mul(dx, hn::Add(hn::Mul(a, dx), hn::Mul(b, dy)));
-        const auto h = hn::Sub(f, hn::Add(across, hn::Mul(c, hn::Mul(dy, dy))));
-        const auto covered = hn::Gt(h, hn::Zero(kFloats));
-        if (hn::AllFalse(kFloats, covered)) continue;
-        const auto along_x = hn::Mul(hn::Mul(qx, slope), hn::Sub(x, hn::Mul(qx, origin)));
-        const auto along_y = hn::Mul(hn::Mul(qy, slope), hn::Sub(y, hn::Mul(qy, origin)));
-        const auto m = hn::Add(hn::Add(z, along_x), along_y);
-        const auto depth = hn::Mul(hn::Sub(m, hn::Sqrt(h)), load(front.foreshortening, i));
-        changed |= keep_nearer(depth, covered, winner, i, front);
+HWY_INLINE bool all_hit(const Front& front) {
+    auto hit = hn::Lt(load(front.depth, 0), set(kInfinity));
+    for (int i = kStep; i < kLanes; i += kStep) {
+        hit = hn::And(hit, hn::Lt(load(front.depth, i), set(kInfinity)));
     }
-    if (changed) update_farthest(front);
+    return hn::AllTrue(kFloats, hit);
 }
 
-void intersect_spheres(float origin_step, float slope_step, const SpherePacket& packet,
-                       std::uint32_t first, Front& front) {
-    for (LaneBits lanes = overlap_lanes(packet.bounds, front.window); lanes != 0;
-         lanes &= lanes - 1) {
-        const auto lane = static_cast<std::uint32_t>(std::countr_zero(lanes));
-        intersect_sphere(origin_step, slope_step, packet.forms[lane], first + lane, front);
+// ---- Spheres ----
+
+struct SphereTest {
+    SphereForm form;
+    float origin_step, slope_step;
+
+    HWY_INLINE bool operator()(Name name, Front& front) const {
+        const auto origin = set(origin_step);
+        const auto slope = set(slope_step);
+        bool changed = false;
+        for (int i = 0; i < kLanes; i += kStep) {
+            const auto qx = load(front.x, i);
+            const auto qy = load(front.y, i);
+            const auto dx = hn::Sub(qx, set(form.u));
+            const auto dy = hn::Sub(qy, set(form.v));
+            const auto across =
+                hn::Mul(dx, hn::Add(hn::Mul(set(form.a), dx), hn::Mul(set(form.b), dy)));
+            const auto h =
+                hn::Sub(set(form.f), hn::Add(across, hn::Mul(set(form.c), hn::Mul(dy, dy))));
+            const auto covered = hn::Gt(h, hn::Zero(kFloats));
+            if (hn::AllFalse(kFloats, covered)) continue;
+            const auto along_x =
+                hn::Mul(hn::Mul(qx, slope), hn::Sub(set(form.x), hn::Mul(qx, origin)));
+            const auto along_y =
+                hn::Mul(hn::Mul(qy, slope), hn::Sub(set(form.y), hn::Mul(qy, origin)));
+            const auto m = hn::Add(hn::Add(set(form.z), along_x), along_y);
+            const auto depth = hn::Mul(hn::Sub(m, hn::Sqrt(h)), load(front.foreshortening, i));
+            changed |= keep_nearer(depth, covered, 0.0F, name, i, front);
+        }
+        return changed;
     }
-}
+};
 
-template <class Vector>
+// ---- Triangles ----
+
 HWY_INLINE Vector edge_value(const TriangleForm::Edge& edge, Vector qx, Vector qy) {
     return hn::Sub(hn::Mul(set(edge.dx), hn::Sub(qy, set(edge.y))),
                    hn::Mul(set(edge.dy), hn::Sub(qx, set(edge.x))));
 }
 
-/// True if it is the nearest so far on some ray.
-HWY_INLINE bool intersect_triangle(const TriangleForm& form, std::uint32_t winner, Front& front) {
-    bool changed = false;
-    for (int i = 0; i < kLanes; i += kStep) {
-        const auto qx = load(front.x, i);
-        const auto qy = load(front.y, i);
-        const auto e0 = edge_value(form.edges[0], qx, qy);
-        const auto e1 = edge_value(form.edges[1], qx, qy);
-        const auto e2 = edge_value(form.edges[2], qx, qy);
-        const auto covered = hn::Ge(hn::Min(hn::Min(e0, e1), e2), hn::Zero(kFloats));
-        if (hn::AllFalse(kFloats, covered)) continue;
-        const auto rise = hn::Add(hn::Mul(set(form.gx), hn::Sub(qx, set(form.u))),
-                                  hn::Mul(set(form.gy), hn::Sub(qy, set(form.v))));
-        const auto facing =
-            hn::Add(hn::Add(set(form.w), hn::Mul(set(form.wx), qx)), hn::Mul(set(form.wy), qy));
-        const auto plane = hn::Add(set(form.z), hn::Div(rise, facing));
-        const auto depth = hn::Min(hn::Max(plane, set(form.near)), set(form.far));
-        changed |= keep_nearer(depth, covered, winner, i, front);
+struct TriangleTest {
+    TriangleForm form;
+
+    HWY_INLINE bool operator()(Name name, Front& front) const {
+        bool changed = false;
+        for (int i = 0; i < kLanes; i += kStep) {
+            const auto qx = load(front.x, i);
+            const auto qy = load(front.y, i);
+            const auto e0 = edge_value(form.edges[0], qx, qy);
+            const auto e1 = edge_value(form.edges[1], qx, qy);
+            const auto e2 = edge_value(form.edges[2], qx, qy);
+            const auto covered = hn::Ge(hn::Min(hn::Min(e0, e1), e2), hn::Zero(kFloats));
+            if (hn::AllFalse(kFloats, covered)) continue;
+            const auto rise = hn::Add(hn::Mul(set(form.gx), hn::Sub(qx, set(form.u))),
+                                      hn::Mul(set(form.gy), hn::Sub(qy, set(form.v))));
+            const auto facing =
+                hn::Add(hn::Add(set(form.w), hn::Mul(set(form.wx), qx)), hn::Mul(set(form.wy), qy));
+            const auto plane = hn::Add(set(form.z), hn::Div(rise, facing));
+            const auto depth = hn::Min(hn::Max(plane, set(form.near)), set(form.far));
+            changed |= keep_nearer(depth, covered, kCoincident, name, i, front);
+        }
+        return changed;
     }
-    return changed;
+};
+
+// ---- Glyphs ----
+
+struct Vectors {
+    Vector x, y, z;
+};
+
+HWY_INLINE Vector dot(const Vectors& a, const Vectors& b) {
+    return hn::Add(hn::Add(hn::Mul(a.x, b.x), hn::Mul(a.y, b.y)), hn::Mul(a.z, b.z));
+}
+HWY_INLINE Vectors along(const Vectors& o, const Vectors& d, Vector s) {
+    return {hn::Add(o.x, hn::Mul(s, d.x)), hn::Add(o.y, hn::Mul(s, d.y)),
+            hn::Add(o.z, hn::Mul(s, d.z))};
+}
+/// A number that can be divided by.
+HWY_INLINE Vector not_zero(Vector v) {
+    const auto tiny = hn::Lt(hn::Abs(v), set(1e-30F));
+    return hn::IfThenElse(tiny, set(1e-30F), v);
 }
 
-void intersect_triangles(const TrianglePacket& packet, std::uint32_t first, Front& front) {
-    bool changed = false;
-    for (LaneBits lanes = overlap_lanes(packet.bounds, front.window); lanes != 0;
-         lanes &= lanes - 1) {
-        const auto lane = static_cast<std::uint32_t>(std::countr_zero(lanes));
-        changed |= intersect_triangle(packet.forms[lane], first + lane, front);
-    }
-    if (changed) update_farthest(front);
+/// Rays in the coordinates of a unit shape: p + s d; see GlyphForm.
+struct LocalRays {
+    Vectors p, d;
+};
+
+HWY_INLINE LocalRays local_rays(const GlyphForm& form, Vector qx, Vector qy) {
+    const auto dx = hn::Sub(qx, set(form.u));
+    const auto dy = hn::Sub(qy, set(form.v));
+    const auto own = [&](std::size_t k) {
+        return hn::Add(hn::Mul(set(form.right[k]), dx), hn::Mul(set(form.down[k]), dy));
+    };
+    LocalRays rays{{own(0), own(1), own(2)}, {}};
+    rays.d =
+        along({set(form.ahead[0]), set(form.ahead[1]), set(form.ahead[2])}, rays.p, set(form.turn));
+    return rays;
 }
+
+/// Moves the rays' points to those nearest to the origin, where they are of the shape's size, and
+/// returns how far.
+HWY_INLINE Vector approach(LocalRays& rays) {
+    const auto s = hn::Neg(hn::Div(dot(rays.p, rays.d), not_zero(dot(rays.d, rays.d))));
+    rays.p = along(rays.p, rays.d, s);
+    return s;
+}
+
+struct LocalHit {
+    Vector s;
+    Mask covered;
+};
+
+HWY_INLINE LocalHit meet_ball(LocalRays rays) {
+    const auto to_origin = approach(rays);
+    const auto rest = hn::Sub(set(1.0F), dot(rays.p, rays.p));
+    const auto covered = hn::Gt(rest, hn::Zero(kFloats));
+    const auto half = hn::Sqrt(hn::Max(rest, hn::Zero(kFloats)));
+    const auto speed = hn::Sqrt(dot(rays.d, rays.d));
+    return {hn::Sub(to_origin, hn::Div(half, not_zero(speed))), covered};
+}
+
+/// The part of rays within |x| <= 1 along one axis.
+struct Slab {
+    Vector lo, hi;
+    HWY_INLINE Slab(Vector p, Vector d) {
+        const auto scale = hn::Div(set(1.0F), not_zero(d));
+        const auto a = hn::Mul(hn::Sub(set(-1.0F), p), scale);
+        const auto b = hn::Mul(hn::Sub(set(1.0F), p), scale);
+        lo = hn::Min(a, b);
+        hi = hn::Max(a, b);
+    }
+};
+
+HWY_INLINE LocalHit meet_box(const LocalRays& rays) {
+    const Slab x(rays.p.x, rays.d.x);
+    const Slab y(rays.p.y, rays.d.y);
+    const Slab z(rays.p.z, rays.d.z);
+    const auto entry = hn::Max(hn::Max(x.lo, y.lo), z.lo);
+    const auto exit = hn::Min(hn::Min(x.hi, y.hi), z.hi);
+    return {entry, hn::Le(entry, exit)};
+}
+
+/// Between its two planes the lateral surface encloses where x^2 + y^2 - r(z)^2 < 0, with
+/// r(z) = middle + slope z.
+HWY_INLINE LocalHit meet_frustum(LocalRays rays, float slope, float middle, bool capped) {
+    const auto to_origin = approach(rays);
+    const auto& [p, d] = rays;
+    const Slab slab(p.z, d.z);
+    const auto radius = hn::Add(set(middle), hn::Mul(set(slope), p.z));
+    const auto growth = hn::Mul(set(slope), d.z);
+    const auto a = hn::Sub(hn::Add(hn::Mul(d.x, d.x), hn::Mul(d.y, d.y)), hn::Mul(growth, growth));
+    const auto b = hn::Sub(hn::Add(hn::Mul(p.x, d.x), hn::Mul(p.y, d.y)), hn::Mul(radius, growth));
+    const auto c = hn::Sub(hn::Add(hn::Mul(p.x, p.x), hn::Mul(p.y, p.y)), hn::Mul(radius, radius));
+    const auto rest = hn::Sub(hn::Mul(b, b), hn::Mul(a, c));
+    const auto real = hn::Ge(rest, hn::Zero(kFloats));
+    const auto root = hn::Sqrt(hn::Max(rest, hn::Zero(kFloats)));
+    // The sum of b and root of one sign loses no digits; the other crossing follows from c.
+    const auto sum = hn::Neg(hn::Add(b, hn::CopySign(root, b)));
+    const auto one = hn::Div(sum, not_zero(a));
+    const auto two = hn::Div(c, not_zero(sum));
+    const auto first = hn::Min(one, two);
+    const auto second = hn::Max(one, two);
+    const auto within = [&](Vector s) {
+        const auto z = hn::Add(p.z, hn::Mul(s, d.z));
+        const auto r = hn::Add(set(middle), hn::Mul(set(slope), z));
+        return hn::And(hn::And(hn::Ge(s, slab.lo), hn::Le(s, slab.hi)),
+                       hn::Ge(r, hn::Zero(kFloats)));
+    };
+    const auto on_first = hn::And(real, within(first));
+    const auto on_second = hn::And(real, within(second));
+    auto s = hn::IfThenElse(on_first, first, second);
+    auto covered = hn::Or(on_first, on_second);
+    if (capped) {
+        const auto at = along(p, d, slab.lo);
+        const auto r = hn::Add(set(middle), hn::Mul(set(slope), at.z));
+        const auto inside =
+            hn::Lt(hn::Add(hn::Mul(at.x, at.x), hn::Mul(at.y, at.y)), hn::Mul(r, r));
+        s = hn::IfThenElse(inside, slab.lo, s);
+        covered = hn::Or(covered, inside);
+    }
+    return {hn::Add(to_origin, s), covered};
+}
+
+HWY_INLINE LocalHit meet_plane(const LocalRays& rays, bool round) {
+    const auto s = hn::Neg(hn::Div(rays.p.z, not_zero(rays.d.z)));
+    const auto at = along(rays.p, rays.d, s);
+    const auto one = set(1.0F);
+    const auto in_disc = hn::Le(hn::Add(hn::Mul(at.x, at.x), hn::Mul(at.y, at.y)), one);
+    const auto in_square = hn::And(hn::Le(hn::Abs(at.x), one), hn::Le(hn::Abs(at.y), one));
+    return {s, round ? in_disc : in_square};
+}
+
+template <GlyphKind kKind>
+struct GlyphTest {
+    GlyphForm form;
+    float slope, middle;
+    bool capped;
+
+    HWY_INLINE LocalHit meet(const LocalRays& rays) const {
+        if constexpr (kKind == GlyphKind::ellipsoid) return meet_ball(rays);
+        if constexpr (kKind == GlyphKind::box) return meet_box(rays);
+        if constexpr (kKind == GlyphKind::frustum) {
+            return meet_frustum(rays, slope, middle, capped);
+        }
+        if constexpr (kKind == GlyphKind::disc) return meet_plane(rays, true);
+        if constexpr (kKind == GlyphKind::rectangle) return meet_plane(rays, false);
+    }
+
+    HWY_INLINE bool operator()(Name name, Front& front) const {
+        constexpr bool kRound = kKind == GlyphKind::ellipsoid || kKind == GlyphKind::frustum;
+        bool changed = false;
+        for (int i = 0; i < kLanes; i += kStep) {
+            const LocalRays rays = local_rays(form, load(front.x, i), load(front.y, i));
+            const LocalHit hit = meet(rays);
+            if (hn::AllFalse(kFloats, hit.covered)) continue;
+            const auto depth = hn::Add(set(form.z), hit.s);
+            changed |= keep_nearer(depth, hit.covered, kRound ? 0.0F : kCoincident, name, i, front);
+        }
+        return changed;
+    }
+};
+
+// ---- Packets ----
+
+/// A lane's numbers.
+template <class Form>
+HWY_INLINE Form form_of(const ScreenPacket& packet, int lane) {
+    std::array<float, sizeof(Form) / sizeof(float)> values;
+    for (std::size_t k = 0; k < values.size(); ++k) values[k] = packet.form[k][lane];
+    return std::bit_cast<Form>(values);
+}
+
+template <GlyphKind kKind>
+HWY_INLINE GlyphTest<kKind> glyph_test(const ScreenPacket& packet, int lane) {
+    const auto a = static_cast<float>(packet.shape.a);
+    return {form_of<GlyphForm>(packet, lane), 0.5F * (a - 1.0F), 0.5F * (1.0F + a),
+            packet.shape.capped};
+}
+
+/// Calls `run(make)`, where `make(packet, lane)` gives the test for a primitive of the packet's
+/// kind.
+template <class Run>
+HWY_INLINE void for_kind(const Basis& basis, const ScreenPacket& packet, const Run& run) {
+    using enum GlyphKind;
+    switch (packet.kind) {
+        case ClusterKind::spheres:
+            return run([&](const ScreenPacket& p, int lane) {
+                return SphereTest{form_of<SphereForm>(p, lane),
+                                  static_cast<float>(basis.origin_step),
+                                  static_cast<float>(basis.slope_step)};
+            });
+        case ClusterKind::triangles:
+        case ClusterKind::solids:
+            return run([](const ScreenPacket& p, int lane) {
+                return TriangleTest{form_of<TriangleForm>(p, lane)};
+            });
+        case ClusterKind::glyphs: break;
+    }
+    const auto run_glyphs = [&]<GlyphKind kKind>() {
+        run([](const ScreenPacket& p, int lane) { return glyph_test<kKind>(p, lane); });
+    };
+    switch (packet.shape.kind) {
+        case ellipsoid: return run_glyphs.template operator()<ellipsoid>();
+        case box: return run_glyphs.template operator()<box>();
+        case frustum: return run_glyphs.template operator()<frustum>();
+        case disc: return run_glyphs.template operator()<disc>();
+        case rectangle: return run_glyphs.template operator()<rectangle>();
+        default: return;
+    }
+}
+
+void intersect_front(const Basis& basis, const ScreenPacket* packets, std::uint32_t index,
+                     Front& front) {
+    const ScreenPacket& packet = packets[index];
+    LaneBits lanes = overlap_lanes(packet.bounds, front.window);
+    if (lanes == 0) return;
+    for_kind(basis, packet, [&](const auto& make) {
+        bool changed = false;
+        for (; lanes != 0; lanes &= lanes - 1) {
+            const int lane = std::countr_zero(lanes);
+            const auto test = make(packet, lane);
+            changed |= test({packets, index * kLanes + static_cast<std::uint32_t>(lane)}, front);
+        }
+        if (changed && all_hit(front)) front.window.farthest = most(front.depth);
+    });
+}
+
+/// Cells of a raster that bounds reach into.
+struct Cells {
+    alignas(64) std::int32_t left[kLanes], right[kLanes], top[kLanes], bottom[kLanes];
+
+    HWY_INLINE Cells(const BoundsPacket& bounds, const FrontRaster& raster) {
+        const auto find = [&](const Lanes<float>& at, float from, int count, std::int32_t* cells) {
+            for (int i = 0; i < kLanes; i += kStep) {
+                const auto place =
+                    hn::Mul(hn::Sub(load(at, i), set(from)), set(raster.cells_per_pixel));
+                const auto cell =
+                    hn::Min(hn::Max(place, hn::Zero(kFloats)), set(static_cast<float>(count - 1)));
+                hn::Store(hn::ConvertTo(kIntegers, cell), kIntegers, cells + i);
+            }
+        };
+        find(bounds.left, raster.left, raster.across, left);
+        find(bounds.right, raster.left, raster.across, right);
+        find(bounds.top, raster.top, raster.down, top);
+        find(bounds.bottom, raster.top, raster.down, bottom);
+    }
+};
+
+void intersect_raster(const Basis& basis, const ScreenPacket* packets, std::uint32_t index,
+                      const FrontRaster& raster) {
+    const ScreenPacket& packet = packets[index];
+    const float width = static_cast<float>(raster.across) / raster.cells_per_pixel;
+    const float height = static_cast<float>(raster.down) / raster.cells_per_pixel;
+    const LaneBits all = overlap_lanes(packet.bounds, {raster.left, raster.left + width, raster.top,
+                                                       raster.top + height, kInfinity});
+    if (all == 0) return;
+    const Cells cells(packet.bounds, raster);
+    for_kind(basis, packet, [&](const auto& make) {
+        for (LaneBits lanes = all; lanes != 0; lanes &= lanes - 1) {
+            const int lane = std::countr_zero(lanes);
+            const Name name{packets, index * kLanes + static_cast<std::uint32_t>(lane)};
+            const float nearest = packet.bounds.depth[lane];
+            const auto test = make(packet, lane);
+            for (int row = cells.top[lane]; row <= cells.bottom[lane]; ++row) {
+                for (int column = cells.left[lane]; column <= cells.right[lane]; ++column) {
+                    const int cell = row * raster.across + column;
+                    if (!(nearest < raster.farthest[cell])) continue;
+                    Front& front = raster.fronts[raster.front_at[cell]];
+                    // As long as a ray hits nothing, the farthest depth stays infinite.
+                    if (test(name, front) && all_hit(front)) {
+                        raster.farthest[cell] = most(front.depth);
+                    }
+                }
+            }
+        }
+    });
+}
+
+// ---- Rays ----
 
 void start_front(float centre_x, float centre_y, float slope_step, const PointPacket& points,
                  Front& front) {
@@ -159,9 +477,8 @@ void start_front(float centre_x, float centre_y, float slope_step, const PointPa
     auto bottom = minus_infinity;
     auto farthest = minus_infinity;
     for (int i = 0; i < kLanes; i += kStep) {
-        const auto on = hn::RebindMask(
-            kFloats,
-            hn::Ne(load(points.active, i), hn::Zero(hn::CappedTag<std::int32_t, kLanes>())));
+        const auto on =
+            hn::RebindMask(kFloats, hn::Ne(load(points.active, i), hn::Zero(kIntegers)));
         const auto x = hn::Sub(load(points.x, i), set(centre_x));
         const auto y = hn::Sub(load(points.y, i), set(centre_y));
         const auto slope_x = hn::Mul(x, set(slope_step));
@@ -185,9 +502,110 @@ void start_front(float centre_x, float centre_y, float slope_step, const PointPa
         hn::GetLane(hn::MaxOfLanes(kFloats, farthest))};
 }
 
+// ---- Hits ----
+
+/// Lanes of a hit packet, to be written.
+struct HitLanes {
+    Mask lanes;
+    int i;
+    HitPacket& hits;
+
+    HWY_INLINE void put(Vector value, Lanes<float>& to) const {
+        hn::Store(hn::IfThenElse(lanes, value, load(to, i)), kFloats, to.data() + i);
+    }
+    HWY_INLINE void put(std::uint32_t value, Lanes<std::uint32_t>& to) const {
+        const auto merged =
+            hn::IfThenElse(hn::RebindMask(kIndices, lanes), hn::Set(kIndices, value), load(to, i));
+        hn::Store(merged, kIndices, to.data() + i);
+    }
+    HWY_INLINE void put_normal(const Vectors& n) const {
+        put(n.x, hits.normal_x);
+        put(n.y, hits.normal_y);
+        put(n.z, hits.normal_z);
+    }
+};
+
+HWY_INLINE Vectors vectors(const ScreenPacket& packet, int lane, std::size_t first) {
+    return {set(packet.hit[first][lane]), set(packet.hit[first + 1][lane]),
+            set(packet.hit[first + 2][lane])};
+}
+
+/// The hits of a sphere or triangle, from their place in the scene.
+HWY_INLINE void resolve_placed(const ScreenPacket& packet, int lane, const RayPacket& rays,
+                               const HitLanes& to) {
+    const int i = to.i;
+    const Vectors from = vectors(packet, lane, 0);
+    const auto t = load(to.hits.t, i);
+    const auto at = [&](const Lanes<float>& origin, const Lanes<float>& dir, Vector from_origin) {
+        return hn::Sub(hn::Add(load(origin, i), hn::Mul(t, load(dir, i))), from_origin);
+    };
+    if (packet.kind == ClusterKind::solids) return to.put_normal(vectors(packet, lane, 3));
+    const Vectors p{at(rays.origin_x, rays.dir_x, from.x), at(rays.origin_y, rays.dir_y, from.y),
+                    at(rays.origin_z, rays.dir_z, from.z)};
+    if (packet.kind == ClusterKind::spheres) return to.put_normal(p);
+    const auto zero = hn::Zero(kFloats);
+    const auto one = set(1.0F);
+    const auto u = hn::Min(hn::Max(dot(p, vectors(packet, lane, 6)), zero), one);
+    const auto v = hn::Min(hn::Max(dot(p, vectors(packet, lane, 9)), zero), hn::Sub(one, u));
+    to.put_normal(vectors(packet, lane, 3));
+    to.put(u, to.hits.u);
+    to.put(v, to.hits.v);
+}
+
+/// The normal of a unit shape at a point of its surface.
+HWY_INLINE Vectors unit_normal(const UnitShape& shape, const Vectors& p) {
+    const auto zero = hn::Zero(kFloats);
+    const auto one = set(1.0F);
+    switch (shape.kind) {
+        case GlyphKind::ellipsoid: return p;
+        case GlyphKind::box: {
+            // Of the face that the point is nearest to.
+            const auto x = hn::Abs(p.x);
+            const auto y = hn::Abs(p.y);
+            const auto z = hn::Abs(p.z);
+            const auto on_x = hn::And(hn::Ge(x, y), hn::Ge(x, z));
+            const auto on_y = hn::AndNot(on_x, hn::Ge(y, z));
+            const auto on_z = hn::Not(hn::Or(on_x, on_y));
+            return {hn::IfThenElseZero(on_x, hn::CopySign(one, p.x)),
+                    hn::IfThenElseZero(on_y, hn::CopySign(one, p.y)),
+                    hn::IfThenElseZero(on_z, hn::CopySign(one, p.z))};
+        }
+        case GlyphKind::frustum: {
+            const auto slope = 0.5F * (static_cast<float>(shape.a) - 1.0F);
+            const auto middle = 0.5F * (1.0F + static_cast<float>(shape.a));
+            const auto radius = hn::Add(set(middle), hn::Mul(set(slope), p.z));
+            const auto about = hn::Sqrt(hn::Add(hn::Mul(p.x, p.x), hn::Mul(p.y, p.y)));
+            const auto off_side = hn::Abs(hn::Sub(about, radius));
+            const auto off_cap = hn::Abs(hn::Sub(hn::Abs(p.z), one));
+            const auto on_cap = shape.capped ? hn::Lt(off_cap, off_side) : hn::Lt(one, zero);
+            return {hn::IfThenElse(on_cap, zero, p.x), hn::IfThenElse(on_cap, zero, p.y),
+                    hn::IfThenElse(on_cap, hn::CopySign(one, p.z), hn::Mul(set(-slope), radius))};
+        }
+        default: return {zero, zero, one};
+    }
+}
+
+HWY_INLINE void resolve_glyph(const ScreenPacket& packet, int lane, const Front& front,
+                              const HitLanes& to) {
+    const int i = to.i;
+    const auto form = form_of<GlyphForm>(packet, lane);
+    const LocalRays rays = local_rays(form, load(front.x, i), load(front.y, i));
+    const auto s = hn::Sub(load(front.depth, i), set(form.z));
+    const Vectors n = unit_normal(packet.shape, along(rays.p, rays.d, s));
+    const Vectors x = vectors(packet, lane, 0);
+    const Vectors y = vectors(packet, lane, 3);
+    const Vectors z = vectors(packet, lane, 6);
+    const auto turned = [&](Vector a, Vector b, Vector c) {
+        return hn::Add(hn::Add(hn::Mul(a, n.x), hn::Mul(b, n.y)), hn::Mul(c, n.z));
+    };
+    to.put_normal({turned(x.x, y.x, z.x), turned(x.y, y.y, z.y), turned(x.z, y.z, z.z)});
+}
+
 /// The lanes of a hit packet that one primitive won.
-HWY_INLINE void resolve_winner(const HitRecord& record, std::uint32_t winner, const Front& front,
-                               const RayPacket& rays, HitPacket& hits) {
+HWY_INLINE void resolve_winner(const ScreenPacket* packets, std::uint32_t winner,
+                               const Front& front, const RayPacket& rays, HitPacket& hits) {
+    const ScreenPacket& packet = packets[winner / kLanes];
+    const int lane = static_cast<int>(winner % kLanes);
     for (int i = 0; i < kLanes; i += kStep) {
         const auto own = hn::Eq(load(front.winner, i), hn::Set(kIndices, winner));
         const auto depth = load(front.depth, i);
@@ -195,46 +613,18 @@ HWY_INLINE void resolve_winner(const HitRecord& record, std::uint32_t winner, co
             hn::And(hn::RebindMask(kFloats, own),
                     hn::And(hn::Lt(depth, set(kInfinity)), hn::Gt(depth, set(-kInfinity))));
         if (hn::AllFalse(kFloats, lanes)) continue;
-        const auto t = load(hits.t, i);
-        const auto px = hn::Sub(hn::Add(load(rays.origin_x, i), hn::Mul(t, load(rays.dir_x, i))),
-                                set(record.origin.x));
-        const auto py = hn::Sub(hn::Add(load(rays.origin_y, i), hn::Mul(t, load(rays.dir_y, i))),
-                                set(record.origin.y));
-        const auto pz = hn::Sub(hn::Add(load(rays.origin_z, i), hn::Mul(t, load(rays.dir_z, i))),
-                                set(record.origin.z));
-        const auto put = [&](auto value, Lanes<float>& to) {
-            hn::Store(hn::IfThenElse(lanes, value, load(to, i)), kFloats, to.data() + i);
-        };
-        if (record.is_sphere) {
-            put(px, hits.normal_x);
-            put(py, hits.normal_y);
-            put(pz, hits.normal_z);
+        const HitLanes to{lanes, i, hits};
+        if (packet.kind == ClusterKind::glyphs) {
+            resolve_glyph(packet, lane, front, to);
         } else {
-            const auto along = [&](Vec3f axis) {
-                return hn::Add(hn::Add(hn::Mul(px, set(axis.x)), hn::Mul(py, set(axis.y))),
-                               hn::Mul(pz, set(axis.z)));
-            };
-            const auto zero = hn::Zero(kFloats);
-            const auto one = set(1.0F);
-            const auto u = hn::Min(hn::Max(along(record.u_axis), zero), one);
-            const auto v = hn::Min(hn::Max(along(record.v_axis), zero), hn::Sub(one, u));
-            put(set(record.normal.x), hits.normal_x);
-            put(set(record.normal.y), hits.normal_y);
-            put(set(record.normal.z), hits.normal_z);
-            put(u, hits.u);
-            put(v, hits.v);
+            resolve_placed(packet, lane, rays, to);
         }
-        const auto put_index = [&](std::uint32_t value, Lanes<std::uint32_t>& to) {
-            const auto merged = hn::IfThenElse(hn::RebindMask(kIndices, lanes),
-                                               hn::Set(kIndices, value), load(to, i));
-            hn::Store(merged, kIndices, to.data() + i);
-        };
-        put_index(record.object, hits.object);
-        put_index(record.primitive, hits.primitive);
+        to.put(packet.object, hits.object);
+        to.put(packet.primitive[lane], hits.primitive);
     }
 }
 
-void resolve_front(const Front& front, const RayPacket& rays, const HitRecord* records,
+void resolve_front(const Front& front, const RayPacket& rays, const ScreenPacket* packets,
                    HitPacket& hits) {
     LaneBits left = 0;
     for (int i = 0; i < kLanes; i += kStep) {
@@ -254,7 +644,7 @@ void resolve_front(const Front& front, const RayPacket& rays, const HitRecord* r
     }
     while (left != 0) {
         const std::uint32_t winner = front.winner[std::countr_zero(left)];
-        resolve_winner(records[winner], winner, front, rays, hits);
+        resolve_winner(packets, winner, front, rays, hits);
         for (int i = 0; i < kLanes; i += kStep) {
             const auto own = hn::Eq(load(front.winner, i), hn::Set(kIndices, winner));
             left &= ~(bits(hn::RebindMask(kFloats, own)) << static_cast<unsigned>(i));
@@ -262,7 +652,7 @@ void resolve_front(const Front& front, const RayPacket& rays, const HitRecord* r
     }
 }
 
-void identify_front(const Front& front, const HitRecord* records, HitPacket& hits) {
+void identify_front(const Front& front, const ScreenPacket* packets, HitPacket& hits) {
     LaneBits hit_lanes = 0;
     for (int i = 0; i < kLanes; i += kStep) {
         const auto depth = load(front.depth, i);
@@ -273,8 +663,10 @@ void identify_front(const Front& front, const HitRecord* records, HitPacket& hit
     }
     for (int i = 0; i < kLanes; ++i) {
         const bool hit = (hit_lanes >> static_cast<unsigned>(i) & 1U) != 0;
-        hits.object[i] = hit ? records[front.winner[i]].object : kNoObject;
-        hits.primitive[i] = hit ? records[front.winner[i]].primitive : kNoObject;
+        const std::uint32_t winner = front.winner[i];
+        hits.object[i] = hit ? packets[winner / kLanes].object : kNoObject;
+        hits.primitive[i] =
+            hit ? packets[winner / kLanes].primitive[static_cast<int>(winner % kLanes)] : kNoObject;
     }
 }
 
@@ -286,9 +678,10 @@ HWY_AFTER_NAMESPACE();
 namespace ink {
 
 HWY_EXPORT(find_overlap);
+HWY_EXPORT(find_union);
 HWY_EXPORT(identify_front);
-HWY_EXPORT(intersect_spheres);
-HWY_EXPORT(intersect_triangles);
+HWY_EXPORT(intersect_front);
+HWY_EXPORT(intersect_raster);
 HWY_EXPORT(resolve_front);
 HWY_EXPORT(start_front);
 
@@ -296,24 +689,26 @@ LaneBits overlap(const BoundsPacket& bounds, const Window& window) {
     return HWY_DYNAMIC_DISPATCH(find_overlap)(bounds, window);
 }
 
-void intersect(const Projection& projection, const SpherePacket& packet, std::uint32_t first,
-               Front& front) {
-    HWY_DYNAMIC_DISPATCH(intersect_spheres)
-    (static_cast<float>(projection.origin_step), static_cast<float>(projection.slope_step), packet,
-     first, front);
+void set_union(const BoundsPacket& of, BoundsPacket& packet, int lane) {
+    HWY_DYNAMIC_DISPATCH(find_union)(of, packet, lane);
 }
 
-void intersect(const Projection& /*projection*/, const TrianglePacket& packet, std::uint32_t first,
-               Front& front) {
-    HWY_DYNAMIC_DISPATCH(intersect_triangles)(packet, first, front);
+void intersect(const Basis& basis, const ScreenPacket* packets, std::uint32_t index, Front& front) {
+    HWY_DYNAMIC_DISPATCH(intersect_front)(basis, packets, index, front);
 }
 
-void identify(const Front& front, const HitRecord* records, HitPacket& hits) {
-    HWY_DYNAMIC_DISPATCH(identify_front)(front, records, hits);
+void intersect(const Basis& basis, const ScreenPacket* packets, std::uint32_t index,
+               const FrontRaster& raster) {
+    HWY_DYNAMIC_DISPATCH(intersect_raster)(basis, packets, index, raster);
 }
 
-void resolve(const Front& front, const RayPacket& rays, const HitRecord* records, HitPacket& hits) {
-    HWY_DYNAMIC_DISPATCH(resolve_front)(front, rays, records, hits);
+void identify(const Front& front, const ScreenPacket* packets, HitPacket& hits) {
+    HWY_DYNAMIC_DISPATCH(identify_front)(front, packets, hits);
+}
+
+void resolve(const Front& front, const RayPacket& rays, const ScreenPacket* packets,
+             HitPacket& hits) {
+    HWY_DYNAMIC_DISPATCH(resolve_front)(front, rays, packets, hits);
 }
 
 void Front::start(const Projection& projection, const PointPacket& points) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 
 #include "accel/screen_packets.h"
 #include "accel/tracer.h"
@@ -18,11 +19,21 @@ struct Front {
     Lanes<float> x, y;            ///< the points, q
     Lanes<float> foreshortening;  ///< 1 / (1 + slope^2) of their rays
     Lanes<float> depth;           ///< infinity: no hit; minus infinity: inactive
-    Lanes<std::uint32_t> winner;  ///< what was given with the primitive that was hit
+    Lanes<std::uint32_t> winner;  ///< what was hit: packet * kLanes + lane
     Window window;                ///< bounds of the active points, largest depth of the hits
 
     /// Starts with no hits.
     void start(const Projection& projection, const PointPacket& points);
+};
+
+/// Fronts in the cells of a raster.
+struct FrontRaster {
+    float left, top;  ///< of the first cell, q
+    float cells_per_pixel;
+    int across, down;
+    const std::uint32_t* front_at;  ///< a cell, row by row: its front
+    float* farthest;  ///< likewise its farthest depth; minus infinity where there is no front
+    Front* fronts;
 };
 
 /// Bit i is set for lane i of sixteen.
@@ -30,17 +41,27 @@ using LaneBits = std::uint32_t;
 
 /// Which of sixteen bounds lie partly in the window.
 LaneBits overlap(const BoundsPacket& bounds, const Window& window);
+/// Bounds of all sixteen.
+void set_union(const BoundsPacket& of, BoundsPacket& packet, int lane);
 
-/// Tests the front's rays against those primitives of a packet that lie in its window. Lane i wins
-/// as `first + i`.
-void intersect(const Projection& projection, const SpherePacket& packet, std::uint32_t first,
-               Front& front);
-void intersect(const Projection& projection, const TrianglePacket& packet, std::uint32_t first,
-               Front& front);
+// Where two surfaces coincide, rounding would choose between them anew at every point. So of
+// surfaces within kCoincident of each other the one of the lower object, then of the lower
+// primitive, counts as the nearer one.
 
-/// The front as hits; `records` is indexed by winners.
-void resolve(const Front& front, const RayPacket& rays, const HitRecord* records, HitPacket& hits);
+/// Scene units, in a scene of size 1: more than the depths of flat surfaces are rounded by.
+inline constexpr float kCoincident = 5e-7F;
+
+/// Tests the front's rays against those primitives of packet `index` that lie in its window.
+void intersect(const Basis& basis, const ScreenPacket* packets, std::uint32_t index, Front& front);
+
+/// The same for all fronts of a raster.
+void intersect(const Basis& basis, const ScreenPacket* packets, std::uint32_t index,
+               const FrontRaster& raster);
+
+/// The front as hits.
+void resolve(const Front& front, const RayPacket& rays, const ScreenPacket* packets,
+             HitPacket& hits);
 /// The same without normals and barycentric coordinates, which are left as they are.
-void identify(const Front& front, const HitRecord* records, HitPacket& hits);
+void identify(const Front& front, const ScreenPacket* packets, HitPacket& hits);
 
 }  // namespace ink

@@ -1,360 +1,510 @@
 #include "accel/screen_packets.h"
 
-#include <algorithm>
-#include <array>
-#include <bit>
 #include <cmath>
+#include <limits>
 
-#include "base/multiversion.h"
+// Everything between the two namespace macros is built once for each instruction set.
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "accel/screen_packets.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
 
-namespace ink {
+HWY_BEFORE_NAMESPACE();
+namespace ink::HWY_NAMESPACE {
 
-namespace {
+namespace hn = hwy::HWY_NAMESPACE;
+
+// Positions are computed in double precision, then rounded once.
+using Doubles = hn::CappedTag<double, kLanes>;
+using Halves = hn::Rebind<float, Doubles>;  ///< as many floats
+constexpr Doubles kDoubles;
+constexpr Halves kHalves;
+constexpr int kStep = static_cast<int>(hn::MaxLanes(Doubles()));
+using Double = hn::Vec<Doubles>;
+using Half = hn::Vec<Halves>;
 
 /// Bounds grow by this much, pixels, which is more than positions are rounded by.
 constexpr float kSlack = 1e-2F;
 /// Likewise for depths; the scene reaches over 2.
 constexpr float kDepthSlack = 1e-5F;
 
-/// What the loops below need of a projection. They take it by value, so that nothing they write can
-/// change it.
-struct Basis {
-    double rx, ry, rz, dx, dy, dz, fx, fy, fz;  ///< right, down, forward
-    double sx, sy, sz;                          ///< start
-    double start_depth, origin_step, slope_step;
-    bool orthographic;
+HWY_INLINE Double number(double value) { return hn::Set(kDoubles, value); }
+HWY_INLINE Half number_f(float value) { return hn::Set(kHalves, value); }
+HWY_INLINE Double load(const Lanes<float>& lanes, int i) {
+    return hn::PromoteTo(kDoubles, hn::LoadU(kHalves, lanes.data() + i));
+}
+HWY_INLINE void put(Half value, Lanes<float>& lanes, int i) {
+    hn::StoreU(value, kHalves, lanes.data() + i);
+}
+HWY_INLINE Half rounded(Double value) { return hn::DemoteTo(kHalves, value); }
+HWY_INLINE void put(Double value, Lanes<float>& lanes, int i) { put(rounded(value), lanes, i); }
 
-    explicit Basis(const Projection& p)
-        : rx(p.right.x),
-          ry(p.right.y),
-          rz(p.right.z),
-          dx(p.down.x),
-          dy(p.down.y),
-          dz(p.down.z),
-          fx(p.forward.x),
-          fy(p.forward.y),
-          fz(p.forward.z),
-          sx(p.start.x),
-          sy(p.start.y),
-          sz(p.start.z),
-          start_depth(p.start_depth),
-          origin_step(p.origin_step),
-          slope_step(p.slope_step),
-          orthographic(p.orthographic()) {}
+struct Triple {
+    Double x, y, z;
 };
 
-/// A form's numbers, each for sixteen lanes: what vectorised loops can write.
-template <class Form>
-using FormLanes = std::array<Lanes<float>, sizeof(Form) / sizeof(float)>;
-
-template <class Form>
-void transpose(const FormLanes<Form>& lanes, std::array<Form, kLanes>& forms) {
-    for (int i = 0; i < kLanes; ++i) {
-        std::array<float, sizeof(Form) / sizeof(float)> values;
-        for (std::size_t k = 0; k < values.size(); ++k) values[k] = lanes[k][i];
-        forms[static_cast<std::size_t>(i)] = std::bit_cast<Form>(values);
-    }
+HWY_INLINE Triple load(const Points& points, int i) {
+    return {load(points.x, i), load(points.y, i), load(points.z, i)};
+}
+HWY_INLINE Double weigh(const Triple& v, double x, double y, double z) {
+    return hn::Add(hn::Add(hn::Mul(v.x, number(x)), hn::Mul(v.y, number(y))),
+                   hn::Mul(v.z, number(z)));
+}
+/// A vector's parts right, down and forward.
+HWY_INLINE Triple turned(const Basis& b, const Triple& v) {
+    return {weigh(v, b.rx, b.ry, b.rz), weigh(v, b.dx, b.dy, b.dz), weigh(v, b.fx, b.fy, b.fz)};
+}
+/// A point's place right, down and forward from the start.
+HWY_INLINE Triple to_camera(const Basis& b, const Triple& p) {
+    return turned(
+        b, {hn::Sub(p.x, number(b.sx)), hn::Sub(p.y, number(b.sy)), hn::Sub(p.z, number(b.sz))});
+}
+HWY_INLINE Triple sum(const Triple& a, const Triple& b) {
+    return {hn::Add(a.x, b.x), hn::Add(a.y, b.y), hn::Add(a.z, b.z)};
+}
+HWY_INLINE Triple difference(const Triple& a, const Triple& b) {
+    return {hn::Sub(a.x, b.x), hn::Sub(a.y, b.y), hn::Sub(a.z, b.z)};
+}
+HWY_INLINE Triple cross(const Triple& a, const Triple& b) {
+    return {hn::Sub(hn::Mul(a.y, b.z), hn::Mul(a.z, b.y)),
+            hn::Sub(hn::Mul(a.z, b.x), hn::Mul(a.x, b.z)),
+            hn::Sub(hn::Mul(a.x, b.y), hn::Mul(a.y, b.x))};
+}
+HWY_INLINE Double dot(const Triple& a, const Triple& b) {
+    return hn::Add(hn::Add(hn::Mul(a.x, b.x), hn::Mul(a.y, b.y)), hn::Mul(a.z, b.z));
+}
+/// Width of a pixel at a depth.
+HWY_INLINE Double pixel_at(const Basis& b, Double depth) {
+    return hn::Add(number(b.origin_step), hn::Mul(depth, number(b.slope_step)));
 }
 
-/// Right, down and forward from the start.
-INKTRACE_INLINE void to_camera(const Basis& basis, const Points& p, int i, double& x, double& y,
-                               double& z) {
-    const double px = static_cast<double>(p.x[i]) - basis.sx;
-    const double py = static_cast<double>(p.y[i]) - basis.sy;
-    const double pz = static_cast<double>(p.z[i]) - basis.sz;
-    x = px * basis.rx + py * basis.ry + pz * basis.rz;
-    y = px * basis.dx + py * basis.dy + pz * basis.dz;
-    z = px * basis.fx + py * basis.fy + pz * basis.fz;
+HWY_INLINE void put_bounds(Half left, Half right, Half top, Half bottom, Half depth, int i,
+                           BoundsPacket& bounds) {
+    const Half slack = number_f(kSlack);
+    put(hn::Sub(left, slack), bounds.left, i);
+    put(hn::Add(right, slack), bounds.right, i);
+    put(hn::Sub(top, slack), bounds.top, i);
+    put(hn::Add(bottom, slack), bounds.bottom, i);
+    put(hn::Sub(depth, number_f(kDepthSlack)), bounds.depth, i);
 }
+
+// ---- Spheres ----
 
 /// The outline of a sphere at C (from the eye) with radius r is the conic where
 /// (C . D)^2 = (|C|^2 - r^2) |D|^2 for D = (x, y, 1). Taken about its centre,
 /// C.z (C.x, C.y) / (C.z^2 - r^2), nothing cancels.
-INKTRACE_MULTIVERSION
-void prepare_perspective(Basis basis, const Points& centres, const Lanes<float>& radii,
-                         BoundsPacket& __restrict bounds, FormLanes<SphereForm>& __restrict form) {
-    auto& [form_u, form_v, form_a, form_b, form_c, form_f, form_x, form_y, form_z] = form;
-    const double step = basis.slope_step;
-    const double pixels = 1.0 / step;
-    for (int i = 0; i < kLanes; ++i) {
-        double x = 0.0;
-        double y = 0.0;
-        double z = 0.0;
-        to_camera(basis, centres, i, x, y, z);
-        const double r = radii[i];
-        const double depth = z + basis.start_depth;
-        const double ahead = depth * depth - r * r;
-        const double tangent = x * x + y * y + ahead;  // squared length of a tangent from the eye
-        const double across = depth / ahead * pixels;
-        const double u = x * across;
-        const double v = y * across;
-        const double a = y * y + ahead;
-        const double c = x * x + ahead;
-        const double width = r * std::sqrt(c) / ahead * pixels;
-        const double height = r * std::sqrt(a) / ahead * pixels;
-        form_x[i] = static_cast<float>(x);
-        form_y[i] = static_cast<float>(y);
-        form_z[i] = static_cast<float>(z);
-        form_u[i] = static_cast<float>(u);
-        form_v[i] = static_cast<float>(v);
-        form_a[i] = static_cast<float>(a * step * step);
-        form_b[i] = static_cast<float>(-2.0 * x * y * step * step);
-        form_c[i] = static_cast<float>(c * step * step);
-        form_f[i] = static_cast<float>(r * r * tangent / ahead);
-        bounds.left[i] = static_cast<float>(u - width) - kSlack;
-        bounds.right[i] = static_cast<float>(u + width) + kSlack;
-        bounds.top[i] = static_cast<float>(v - height) - kSlack;
-        bounds.bottom[i] = static_cast<float>(v + height) + kSlack;
-        bounds.depth[i] = static_cast<float>(z - r) - kDepthSlack;
+void prepare_perspective(Basis basis, const SphereLanes& spheres, ScreenPacket& packet) {
+    auto& form = packet.form;
+    const double pixels = 1.0 / basis.slope_step;
+    const double step2 = basis.slope_step * basis.slope_step;
+    for (int i = 0; i < kLanes; i += kStep) {
+        const auto [x, y, z] = to_camera(basis, load(spheres.centre, i));
+        const Double r = load(spheres.radius, i);
+        const Double r2 = hn::Mul(r, r);
+        const Double depth = hn::Add(z, number(basis.start_depth));
+        const Double ahead = hn::Sub(hn::Mul(depth, depth), r2);
+        const Double a = hn::Add(hn::Mul(y, y), ahead);
+        const Double c = hn::Add(hn::Mul(x, x), ahead);
+        const Double tangent = hn::Add(hn::Mul(x, x), a);  // squared length of one from the eye
+        const Double across = hn::Mul(hn::Div(depth, ahead), number(pixels));
+        const Double reach = hn::Mul(hn::Div(r, ahead), number(pixels));
+        const Double u = hn::Mul(x, across);
+        const Double v = hn::Mul(y, across);
+        const Double width = hn::Mul(reach, hn::Sqrt(c));
+        const Double height = hn::Mul(reach, hn::Sqrt(a));
+        put(u, form[0], i);
+        put(v, form[1], i);
+        put(hn::Mul(a, number(step2)), form[2], i);
+        put(hn::Mul(hn::Mul(x, y), number(-2.0 * step2)), form[3], i);
+        put(hn::Mul(c, number(step2)), form[4], i);
+        put(hn::Div(hn::Mul(r2, tangent), ahead), form[5], i);
+        put(x, form[6], i);
+        put(y, form[7], i);
+        put(z, form[8], i);
+        put_bounds(rounded(hn::Sub(u, width)), rounded(hn::Add(u, width)),
+                   rounded(hn::Sub(v, height)), rounded(hn::Add(v, height)), rounded(hn::Sub(z, r)),
+                   i, packet.bounds);
     }
 }
 
-INKTRACE_MULTIVERSION
-void prepare_orthographic(Basis basis, const Points& centres, const Lanes<float>& radii,
-                          BoundsPacket& __restrict bounds, FormLanes<SphereForm>& __restrict form) {
-    auto& [form_u, form_v, form_a, form_b, form_c, form_f, form_x, form_y, form_z] = form;
-    const double step = basis.origin_step;
-    const double pixels = 1.0 / step;
-    for (int i = 0; i < kLanes; ++i) {
-        double x = 0.0;
-        double y = 0.0;
-        double z = 0.0;
-        to_camera(basis, centres, i, x, y, z);
-        const double r = radii[i];
-        const double u = x * pixels;
-        const double v = y * pixels;
-        const double radius = r * pixels;
-        form_x[i] = static_cast<float>(x);
-        form_y[i] = static_cast<float>(y);
-        form_z[i] = static_cast<float>(z);
-        form_u[i] = static_cast<float>(u);
-        form_v[i] = static_cast<float>(v);
-        form_a[i] = static_cast<float>(step * step);
-        form_b[i] = 0.0F;
-        form_c[i] = static_cast<float>(step * step);
-        form_f[i] = static_cast<float>(r * r);
-        bounds.left[i] = static_cast<float>(u - radius) - kSlack;
-        bounds.right[i] = static_cast<float>(u + radius) + kSlack;
-        bounds.top[i] = static_cast<float>(v - radius) - kSlack;
-        bounds.bottom[i] = static_cast<float>(v + radius) + kSlack;
-        bounds.depth[i] = static_cast<float>(z - r) - kDepthSlack;
+void prepare_orthographic(Basis basis, const SphereLanes& spheres, ScreenPacket& packet) {
+    auto& form = packet.form;
+    const double pixels = 1.0 / basis.origin_step;
+    const Double step2 = number(basis.origin_step * basis.origin_step);
+    for (int i = 0; i < kLanes; i += kStep) {
+        const auto [x, y, z] = to_camera(basis, load(spheres.centre, i));
+        const Double r = load(spheres.radius, i);
+        const Double u = hn::Mul(x, number(pixels));
+        const Double v = hn::Mul(y, number(pixels));
+        const Double reach = hn::Mul(r, number(pixels));
+        put(u, form[0], i);
+        put(v, form[1], i);
+        put(step2, form[2], i);
+        put(hn::Zero(kDoubles), form[3], i);
+        put(step2, form[4], i);
+        put(hn::Mul(r, r), form[5], i);
+        put(x, form[6], i);
+        put(y, form[7], i);
+        put(z, form[8], i);
+        put_bounds(rounded(hn::Sub(u, reach)), rounded(hn::Add(u, reach)),
+                   rounded(hn::Sub(v, reach)), rounded(hn::Add(v, reach)), rounded(hn::Sub(z, r)),
+                   i, packet.bounds);
     }
 }
 
-/// Corners of triangles: right, down and forward from the start, and on the screen.
-struct Corners {
-    Lanes<double> x, y, z;
-    Lanes<float> u, v;
+void prepare_spheres(Basis basis, const SphereLanes& spheres, ScreenPacket& packet) {
+    if (basis.orthographic) {
+        prepare_orthographic(basis, spheres, packet);
+    } else {
+        prepare_perspective(basis, spheres, packet);
+    }
+    packet.hit[0] = spheres.centre.x;
+    packet.hit[1] = spheres.centre.y;
+    packet.hit[2] = spheres.centre.z;
+}
+
+// ---- Triangles ----
+
+/// A corner: right, down and forward from the start, and on the screen.
+struct Corner {
+    Triple p;
+    Half u, v;
 };
 
-INKTRACE_MULTIVERSION
-void project(Basis basis, const Points& points, Corners& __restrict corners) {
-    const double parallel = 1.0 / basis.origin_step;
-    const double step = basis.orthographic ? 1.0 : 1.0 / basis.slope_step;
-    for (int i = 0; i < kLanes; ++i) {
-        double x = 0.0;
-        double y = 0.0;
-        double z = 0.0;
-        to_camera(basis, points, i, x, y, z);
-        const double scale = basis.orthographic ? parallel : step / (z + basis.start_depth);
-        corners.x[i] = x;
-        corners.y[i] = y;
-        corners.z[i] = z;
-        corners.u[i] = static_cast<float>(x * scale);
-        corners.v[i] = static_cast<float>(y * scale);
-    }
+HWY_INLINE Corner project(const Basis& basis, const Points& points, int i) {
+    const Triple p = to_camera(basis, load(points, i));
+    const Double scale = basis.orthographic ? number(1.0 / basis.origin_step)
+                                            : hn::Div(number(1.0 / basis.slope_step),
+                                                      hn::Add(p.z, number(basis.start_depth)));
+    return {p, rounded(hn::Mul(p.x, scale)), rounded(hn::Mul(p.y, scale))};
 }
 
 /// Edge from corner `a` to corner `b`, its inside on the left if `side` is 1, else -1.
-INKTRACE_INLINE void lay_edge(const Corners& a, const Corners& b, const Lanes<float>& side,
-                              Lanes<float>* edge) {
-    for (int i = 0; i < kLanes; ++i) {
-        const bool swap = b.u[i] < a.u[i] || (b.u[i] == a.u[i] && b.v[i] < a.v[i]);
-        const float sign = swap ? -side[i] : side[i];
-        const float x0 = swap ? b.u[i] : a.u[i];
-        const float y0 = swap ? b.v[i] : a.v[i];
-        const float x1 = swap ? a.u[i] : b.u[i];
-        const float y1 = swap ? a.v[i] : b.v[i];
-        edge[0][i] = x0;
-        edge[1][i] = y0;
-        edge[2][i] = sign * (x1 - x0);
-        edge[3][i] = sign * (y1 - y0);
-    }
+HWY_INLINE void lay_edge(const Corner& a, const Corner& b, Half side, int i, Lanes<float>* edge) {
+    const auto swap = hn::Or(hn::Lt(b.u, a.u), hn::And(hn::Eq(b.u, a.u), hn::Lt(b.v, a.v)));
+    const Half sign = hn::IfThenElse(swap, hn::Neg(side), side);
+    const Half x0 = hn::IfThenElse(swap, b.u, a.u);
+    const Half y0 = hn::IfThenElse(swap, b.v, a.v);
+    const Half x1 = hn::IfThenElse(swap, a.u, b.u);
+    const Half y1 = hn::IfThenElse(swap, a.v, b.v);
+    put(x0, edge[0], i);
+    put(y0, edge[1], i);
+    put(hn::Mul(sign, hn::Sub(x1, x0)), edge[2], i);
+    put(hn::Mul(sign, hn::Sub(y1, y0)), edge[3], i);
 }
 
-INKTRACE_MULTIVERSION
-void prepare_triangles(Basis basis, const Corners& a, const Corners& b, const Corners& c,
-                       BoundsPacket& __restrict bounds, FormLanes<TriangleForm>& __restrict form) {
-    Lanes<float> side;
-    auto* depth = &form[12];  // behind the edges: u, v, z, gx, gy, w, wx, wy, near, far
-    for (int i = 0; i < kLanes; ++i) {
+/// Brings the corner that comes first on the screen to the front, so that triangles with the same
+/// corners compute the same plane in whatever order these are given.
+HWY_INLINE void order(Corner& first, Corner& second) {
+    const auto swap = hn::Or(hn::Lt(second.u, first.u),
+                             hn::And(hn::Eq(second.u, first.u), hn::Lt(second.v, first.v)));
+    const auto wide = hn::Gt(hn::PromoteTo(kDoubles, hn::IfThenElseZero(swap, number_f(1.0F))),
+                             hn::Zero(kDoubles));
+    const auto exchange = [](auto mask, auto& a, auto& b) {
+        const auto old = a;
+        a = hn::IfThenElse(mask, b, a);
+        b = hn::IfThenElse(mask, old, b);
+    };
+    exchange(swap, first.u, second.u);
+    exchange(swap, first.v, second.v);
+    exchange(wide, first.p.x, second.p.x);
+    exchange(wide, first.p.y, second.p.y);
+    exchange(wide, first.p.z, second.p.z);
+}
+
+HWY_INLINE void lay_plane(const Basis& basis, const Corner& a, const Corner& b, const Corner& c,
+                          int i, Lanes<float>* plane) {
+    const Triple n = cross(difference(b.p, a.p), difference(c.p, a.p));
+    // The ray at depth a.z is this far from corner a, a pixel of q.
+    const Double step = pixel_at(basis, a.p.z);
+    put(a.u, plane[0], i);
+    put(a.v, plane[1], i);
+    put(a.p.z, plane[2], i);
+    put(hn::Neg(hn::Mul(step, n.x)), plane[3], i);
+    put(hn::Neg(hn::Mul(step, n.y)), plane[4], i);
+    put(n.z, plane[5], i);
+    put(hn::Mul(n.x, number(basis.slope_step)), plane[6], i);
+    put(hn::Mul(n.y, number(basis.slope_step)), plane[7], i);
+}
+
+void prepare_triangles(Basis basis, const TriangleLanes& triangles, ScreenPacket& packet) {
+    auto& form = packet.form;
+    for (int i = 0; i < kLanes; i += kStep) {
+        Corner a = project(basis, triangles.a, i);
+        Corner b = project(basis, triangles.b, i);
+        Corner c = project(basis, triangles.c, i);
         // Exact: products of differences of floats.
-        const double area =
-            (static_cast<double>(b.u[i]) - a.u[i]) * (static_cast<double>(c.v[i]) - a.v[i]) -
-            (static_cast<double>(b.v[i]) - a.v[i]) * (static_cast<double>(c.u[i]) - a.u[i]);
-        side[i] = area < 0.0 ? -1.0F : 1.0F;
+        const auto apart = [](Half to, Half from) {
+            return hn::Sub(hn::PromoteTo(kDoubles, to), hn::PromoteTo(kDoubles, from));
+        };
+        const Double area = hn::Sub(hn::Mul(apart(b.u, a.u), apart(c.v, a.v)),
+                                    hn::Mul(apart(b.v, a.v), apart(c.u, a.u)));
+        // The sign of a double survives rounding, zero does too.
+        const Half rounded_area = rounded(area);
+        const Half side = hn::IfThenElse(hn::Lt(rounded_area, hn::Zero(kHalves)), number_f(-1.0F),
+                                         number_f(1.0F));
+        lay_edge(a, b, side, i, &form[0]);
+        lay_edge(b, c, side, i, &form[4]);
+        lay_edge(c, a, side, i, &form[8]);
+        const Half nearest = rounded(hn::Min(hn::Min(a.p.z, b.p.z), c.p.z));
+        put(nearest, form[20], i);
+        put(hn::Max(hn::Max(a.p.z, b.p.z), c.p.z), form[21], i);
         // Seen edge-on, it shows nothing.
-        const float left = std::min(std::min(a.u[i], b.u[i]), c.u[i]) - kSlack;
-        bounds.left[i] = area == 0.0 ? kInfinity : left;
-        bounds.right[i] = std::max(std::max(a.u[i], b.u[i]), c.u[i]) + kSlack;
-        bounds.top[i] = std::min(std::min(a.v[i], b.v[i]), c.v[i]) - kSlack;
-        bounds.bottom[i] = std::max(std::max(a.v[i], b.v[i]), c.v[i]) + kSlack;
-        const double nearest = std::min(std::min(a.z[i], b.z[i]), c.z[i]);
-        const double farthest = std::max(std::max(a.z[i], b.z[i]), c.z[i]);
-        bounds.depth[i] = static_cast<float>(nearest) - kDepthSlack;
-        depth[8][i] = static_cast<float>(nearest);
-        depth[9][i] = static_cast<float>(farthest);
-    }
-    lay_edge(a, b, side, &form[0]);
-    lay_edge(b, c, side, &form[4]);
-    lay_edge(c, a, side, &form[8]);
-    for (int i = 0; i < kLanes; ++i) {
-        const double bx = b.x[i] - a.x[i];
-        const double by = b.y[i] - a.y[i];
-        const double bz = b.z[i] - a.z[i];
-        const double cx = c.x[i] - a.x[i];
-        const double cy = c.y[i] - a.y[i];
-        const double cz = c.z[i] - a.z[i];
-        const double nx = by * cz - bz * cy;
-        const double ny = bz * cx - bx * cz;
-        const double nz = bx * cy - by * cx;
-        // The ray at depth a.z is this far from corner a, a pixel of q.
-        const double step = basis.origin_step + a.z[i] * basis.slope_step;
-        depth[0][i] = a.u[i];
-        depth[1][i] = a.v[i];
-        depth[2][i] = static_cast<float>(a.z[i]);
-        depth[3][i] = static_cast<float>(-step * nx);
-        depth[4][i] = static_cast<float>(-step * ny);
-        depth[5][i] = static_cast<float>(nz);
-        depth[6][i] = static_cast<float>(nx * basis.slope_step);
-        depth[7][i] = static_cast<float>(ny * basis.slope_step);
-    }
-}
-
-INKTRACE_MULTIVERSION
-void extend(const Corners& corners, BoundsPacket& packet) {
-    for (int i = 0; i < kLanes; ++i) {
-        packet.left[i] = std::min(packet.left[i], corners.u[i] - kSlack);
-        packet.right[i] = std::max(packet.right[i], corners.u[i] + kSlack);
-        packet.top[i] = std::min(packet.top[i], corners.v[i] - kSlack);
-        packet.bottom[i] = std::max(packet.bottom[i], corners.v[i] + kSlack);
-        packet.depth[i] = std::min(packet.depth[i], static_cast<float>(corners.z[i]) - kDepthSlack);
+        const Half left = hn::IfThenElse(hn::Eq(rounded_area, hn::Zero(kHalves)),
+                                         number_f(std::numeric_limits<float>::infinity()),
+                                         hn::Min(hn::Min(a.u, b.u), c.u));
+        put_bounds(left, hn::Max(hn::Max(a.u, b.u), c.u), hn::Min(hn::Min(a.v, b.v), c.v),
+                   hn::Max(hn::Max(a.v, b.v), c.v), nearest, i, packet.bounds);
+        order(a, b);
+        order(b, c);
+        order(a, b);
+        lay_plane(basis, a, b, c, i, &form[12]);
     }
 }
 
 /// With p = u (b - a) + v (c - a) and n = (b - a) x (c - a): p x (c - a) = u n, (b - a) x p = v n.
-INKTRACE_MULTIVERSION
-void record_triangles(const TriangleLanes& triangles, HitRecord* records) {
-    const auto& [a, b, c] = triangles;
-    std::array<Lanes<float>, 9> values;
-    for (int i = 0; i < kLanes; ++i) {
-        const Vec3f e{b.x[i] - a.x[i], b.y[i] - a.y[i], b.z[i] - a.z[i]};
-        const Vec3f f{c.x[i] - a.x[i], c.y[i] - a.y[i], c.z[i] - a.z[i]};
-        const Vec3f n = cross(e, f);
-        const float squared = dot(n, n);
-        const float scale = squared > 0.0F ? 1.0F / squared : 0.0F;
-        const Vec3f u = cross(f, n) * scale;
-        const Vec3f v = cross(n, e) * scale;
-        values[0][i] = n.x;
-        values[1][i] = n.y;
-        values[2][i] = n.z;
-        values[3][i] = u.x;
-        values[4][i] = u.y;
-        values[5][i] = u.z;
-        values[6][i] = v.x;
-        values[7][i] = v.y;
-        values[8][i] = v.z;
-    }
-    for (int i = 0; i < kLanes; ++i) {
-        records[i].normal = {values[0][i], values[1][i], values[2][i]};
-        records[i].u_axis = {values[3][i], values[4][i], values[5][i]};
-        records[i].v_axis = {values[6][i], values[7][i], values[8][i]};
+void record_triangles(const TriangleLanes& triangles, ScreenPacket& packet) {
+    using Floats = hn::CappedTag<float, kLanes>;
+    constexpr Floats kFloats;
+    auto& hit = packet.hit;
+    for (int i = 0; i < kLanes; i += static_cast<int>(hn::MaxLanes(kFloats))) {
+        const auto from = [&](const Lanes<float>& lanes) {
+            return hn::Load(kFloats, lanes.data() + i);
+        };
+        const auto keep = [&](auto value, Lanes<float>& lanes) {
+            hn::Store(value, kFloats, lanes.data() + i);
+        };
+        const auto minor = [](auto a, auto b, auto c, auto d) {
+            return hn::Sub(hn::Mul(a, b), hn::Mul(c, d));
+        };
+        const auto& [a, b, c] = triangles;
+        const auto ex = hn::Sub(from(b.x), from(a.x));
+        const auto ey = hn::Sub(from(b.y), from(a.y));
+        const auto ez = hn::Sub(from(b.z), from(a.z));
+        const auto fx = hn::Sub(from(c.x), from(a.x));
+        const auto fy = hn::Sub(from(c.y), from(a.y));
+        const auto fz = hn::Sub(from(c.z), from(a.z));
+        const auto nx = minor(ey, fz, ez, fy);
+        const auto ny = minor(ez, fx, ex, fz);
+        const auto nz = minor(ex, fy, ey, fx);
+        const auto squared = hn::Add(hn::Add(hn::Mul(nx, nx), hn::Mul(ny, ny)), hn::Mul(nz, nz));
+        const auto scale =
+            hn::IfThenElse(hn::Gt(squared, hn::Zero(kFloats)),
+                           hn::Div(hn::Set(kFloats, 1.0F), squared), hn::Zero(kFloats));
+        keep(from(a.x), hit[0]);
+        keep(from(a.y), hit[1]);
+        keep(from(a.z), hit[2]);
+        keep(nx, hit[3]);
+        keep(ny, hit[4]);
+        keep(nz, hit[5]);
+        keep(hn::Mul(minor(fy, nz, fz, ny), scale), hit[6]);
+        keep(hn::Mul(minor(fz, nx, fx, nz), scale), hit[7]);
+        keep(hn::Mul(minor(fx, ny, fy, nx), scale), hit[8]);
+        keep(hn::Mul(minor(ny, ez, nz, ey), scale), hit[9]);
+        keep(hn::Mul(minor(nz, ex, nx, ez), scale), hit[10]);
+        keep(hn::Mul(minor(nx, ey, ny, ex), scale), hit[11]);
     }
 }
 
-Vec3f at(const Points& points, int lane) {
-    return {points.x[lane], points.y[lane], points.z[lane]};
+// ---- Glyphs ----
+
+/// The cube that holds a unit shape, or the square in its middle, on the screen.
+HWY_INLINE void bound_glyphs(const Basis& basis, bool flat, const Triple& c, const Triple& x,
+                             const Triple& y, const Triple& z, int i, ScreenPacket& packet) {
+    const Double infinity = number(std::numeric_limits<double>::infinity());
+    Double left = infinity;
+    Double top = infinity;
+    Double right = hn::Neg(infinity);
+    Double bottom = right;
+    Double depth = infinity;
+    Double width = infinity;  // of a pixel, at the corner where it is least
+    for (int corner = 0; corner < (flat ? 4 : 8); ++corner) {
+        Triple p = (corner & 1) != 0 ? sum(c, x) : difference(c, x);
+        p = (corner & 2) != 0 ? sum(p, y) : difference(p, y);
+        if (!flat) p = (corner & 4) != 0 ? sum(p, z) : difference(p, z);
+        const Double pixel = pixel_at(basis, p.z);
+        const Double scale = hn::Div(number(1.0), pixel);
+        const Double u = hn::Mul(p.x, scale);
+        const Double v = hn::Mul(p.y, scale);
+        left = hn::Min(left, u);
+        right = hn::Max(right, u);
+        top = hn::Min(top, v);
+        bottom = hn::Max(bottom, v);
+        depth = hn::Min(depth, p.z);
+        width = hn::Min(width, pixel);
+    }
+    // A corner beside the eye has no place on the screen.
+    const auto beside = hn::Le(width, number(1e-6 * basis.origin_step));
+    left = hn::IfThenElse(beside, hn::Neg(infinity), left);
+    top = hn::IfThenElse(beside, hn::Neg(infinity), top);
+    right = hn::IfThenElse(beside, infinity, right);
+    bottom = hn::IfThenElse(beside, infinity, bottom);
+    put_bounds(rounded(left), rounded(right), rounded(top), rounded(bottom), rounded(depth), i,
+               packet.bounds);
 }
+
+void prepare_glyphs(Basis basis, const GlyphLanes& glyphs, ScreenPacket& packet) {
+    auto& form = packet.form;
+    const bool flat =
+        packet.shape.kind == GlyphKind::disc || packet.shape.kind == GlyphKind::rectangle;
+    for (int i = 0; i < kLanes; i += kStep) {
+        const Triple x = load(glyphs.x_axis, i);
+        const Triple y = load(glyphs.y_axis, i);
+        const Triple z = load(glyphs.z_axis, i);
+        const Triple yz = cross(y, z);
+        const Double scale = hn::Div(number(1.0), dot(x, yz));  // infinite without a volume
+        const std::array<Triple, 3> cofactors{yz, cross(z, x), cross(x, y)};
+        const Triple c = to_camera(basis, load(glyphs.origin, i));
+        const Double pixel = pixel_at(basis, c.z);
+        const Double u = hn::Div(c.x, pixel);
+        const Double v = hn::Div(c.y, pixel);
+        put(u, form[0], i);
+        put(v, form[1], i);
+        put(c.z, form[2], i);
+        auto finite = hn::Eq(pixel, pixel);
+        for (std::size_t k = 0; k < 3; ++k) {
+            const Triple row{hn::Mul(cofactors[k].x, scale), hn::Mul(cofactors[k].y, scale),
+                             hn::Mul(cofactors[k].z, scale)};
+            const Triple own = turned(basis, row);
+            const Double ahead = hn::Add(
+                own.z,
+                hn::Mul(hn::Add(hn::Mul(own.x, u), hn::Mul(own.y, v)), number(basis.slope_step)));
+            put(hn::Mul(own.x, pixel), form[3 + k], i);
+            put(hn::Mul(own.y, pixel), form[6 + k], i);
+            put(ahead, form[9 + k], i);
+            put(row.x, packet.hit[3 * k], i);
+            put(row.y, packet.hit[3 * k + 1], i);
+            put(row.z, packet.hit[3 * k + 2], i);
+            const Double size = hn::Add(hn::Add(hn::Abs(row.x), hn::Abs(row.y)), hn::Abs(row.z));
+            finite = hn::And(finite, hn::Lt(size, number(1e30)));
+        }
+        put(hn::Div(number(basis.slope_step), pixel), form[12], i);
+        bound_glyphs(basis, flat, c, turned(basis, x), turned(basis, y), turned(basis, z), i,
+                     packet);
+        const Half kept = rounded(hn::IfThenElseZero(finite, number(1.0)));  // to a mask of floats
+        put(hn::IfThenElse(hn::Gt(kept, hn::Zero(kHalves)),
+                           hn::LoadU(kHalves, packet.bounds.left.data() + i),
+                           number_f(std::numeric_limits<float>::infinity())),
+            packet.bounds.left, i);
+    }
+}
+
+// ---- Boxes ----
+
+void prepare_boxes(Basis basis, const BoxLanes& boxes, BoundsPacket& packet) {
+    for (int i = 0; i < kLanes; i += kStep) {
+        const Triple lower = load(boxes.lower, i);
+        const Triple upper = load(boxes.upper, i);
+        const Double infinity = number(std::numeric_limits<double>::infinity());
+        Double left = infinity;
+        Double top = infinity;
+        Double depth = infinity;
+        Double right = hn::Neg(infinity);
+        Double bottom = right;
+        for (int corner = 0; corner < 8; ++corner) {
+            const Triple p = to_camera(basis, {(corner & 1) != 0 ? upper.x : lower.x,
+                                               (corner & 2) != 0 ? upper.y : lower.y,
+                                               (corner & 4) != 0 ? upper.z : lower.z});
+            const Double scale = hn::Div(number(1.0), pixel_at(basis, p.z));
+            const Double u = hn::Mul(p.x, scale);
+            const Double v = hn::Mul(p.y, scale);
+            left = hn::Min(left, u);
+            right = hn::Max(right, u);
+            top = hn::Min(top, v);
+            bottom = hn::Max(bottom, v);
+            depth = hn::Min(depth, p.z);
+        }
+        put_bounds(rounded(left), rounded(right), rounded(top), rounded(bottom), rounded(depth), i,
+                   packet);
+    }
+}
+
+}  // namespace ink::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+
+namespace ink {
+
+HWY_EXPORT(prepare_boxes);
+HWY_EXPORT(prepare_glyphs);
+HWY_EXPORT(prepare_spheres);
+HWY_EXPORT(prepare_triangles);
+HWY_EXPORT(record_triangles);
+
+namespace {
 
 void empty_unused(std::size_t used, BoundsPacket& bounds) {
-    for (std::size_t i = used; i < kLanes; ++i) bounds.left[static_cast<int>(i)] = kInfinity;
+    for (std::size_t i = used; i < kLanes; ++i) {
+        bounds.left[static_cast<int>(i)] = std::numeric_limits<float>::infinity();
+    }
 }
 
 }  // namespace
 
+Basis::Basis(const Projection& p)
+    : rx(p.right.x),
+      ry(p.right.y),
+      rz(p.right.z),
+      dx(p.down.x),
+      dy(p.down.y),
+      dz(p.down.z),
+      fx(p.forward.x),
+      fy(p.forward.y),
+      fz(p.forward.z),
+      sx(p.start.x),
+      sy(p.start.y),
+      sz(p.start.z),
+      start_depth(p.start_depth),
+      origin_step(p.origin_step),
+      slope_step(p.slope_step),
+      orthographic(p.orthographic()) {}
+
 BoundsPacket BoundsPacket::none() {
     BoundsPacket bounds{};
-    bounds.left.fill(kInfinity);
+    bounds.left.fill(std::numeric_limits<float>::infinity());
     return bounds;
 }
 
-void prepare(const Projection& projection, const SphereLanes& spheres, std::uint32_t object,
-             std::span<const std::uint32_t> primitives, SpherePacket& packet, HitRecord* records) {
-    const Basis basis(projection);
-    FormLanes<SphereForm> form;
-    if (basis.orthographic) {
-        prepare_orthographic(basis, spheres.centre, spheres.radius, packet.bounds, form);
-    } else {
-        prepare_perspective(basis, spheres.centre, spheres.radius, packet.bounds, form);
-    }
-    transpose(form, packet.forms);
-    empty_unused(primitives.size(), packet.bounds);
-    int lane = 0;
-    for (const std::uint32_t primitive : primitives) {
-        records[lane].origin = at(spheres.centre, lane);
-        records[lane].object = object;
-        records[lane].primitive = primitive;
-        records[lane].is_sphere = true;
-        ++lane;
-    }
-}
-
-void prepare(const Projection& projection, const TriangleLanes& triangles, std::uint32_t object,
-             std::span<const std::uint32_t> primitives, TrianglePacket& packet,
-             HitRecord* records) {
-    const Basis basis(projection);
-    Corners a;
-    Corners b;
-    Corners c;
-    project(basis, triangles.a, a);
-    project(basis, triangles.b, b);
-    project(basis, triangles.c, c);
-    FormLanes<TriangleForm> form;
-    prepare_triangles(basis, a, b, c, packet.bounds, form);
-    transpose(form, packet.forms);
-    empty_unused(primitives.size(), packet.bounds);
-    record_triangles(triangles, records);
-    int lane = 0;
-    for (const std::uint32_t primitive : primitives) {
-        records[lane].origin = at(triangles.a, lane);
-        records[lane].object = object;
-        records[lane].primitive = primitive;
-        records[lane].is_sphere = false;
-        ++lane;
-    }
-}
-
-void prepare(const Projection& projection, std::span<const Bounds3f> boxes, BoundsPacket& packet) {
-    const Basis basis(projection);
-    packet.right.fill(-kInfinity);
-    packet.top.fill(kInfinity);
-    packet.left = packet.top;
-    packet.depth = packet.top;
-    packet.bottom = packet.right;
-    Points points;
-    Corners corners;
-    for (int corner = 0; corner < 8; ++corner) {
-        for (int i = 0; i < kLanes; ++i) {
-            const std::size_t k = std::min(static_cast<std::size_t>(i), boxes.size() - 1);
-            const Vec3f p = boxes[k].corner(corner);
-            points.x[i] = p.x;
-            points.y[i] = p.y;
-            points.z[i] = p.z;
+void prepare(const Basis& basis, const Clusters& clusters, const Cluster& cluster,
+             ScreenPacket& packet) {
+    packet.object = cluster.object;
+    packet.kind = cluster.kind;
+    switch (cluster.kind) {
+        case ClusterKind::spheres:
+            HWY_DYNAMIC_DISPATCH(prepare_spheres)
+            (basis, clusters.spheres[cluster.packet], packet);
+            break;
+        case ClusterKind::triangles: {
+            const TriangleLanes& triangles = clusters.triangles[cluster.packet];
+            HWY_DYNAMIC_DISPATCH(prepare_triangles)(basis, triangles, packet);
+            HWY_DYNAMIC_DISPATCH(record_triangles)(triangles, packet);
+            break;
         }
-        project(basis, points, corners);
-        extend(corners, packet);
+        case ClusterKind::solids: {
+            const SolidLanes& faces = clusters.solids[cluster.packet];
+            HWY_DYNAMIC_DISPATCH(prepare_triangles)(basis, faces.triangles, packet);
+            packet.hit[3] = faces.normal.x;
+            packet.hit[4] = faces.normal.y;
+            packet.hit[5] = faces.normal.z;
+            break;
+        }
+        case ClusterKind::glyphs:
+            packet.shape = clusters.unit_shapes[cluster.object];
+            HWY_DYNAMIC_DISPATCH(prepare_glyphs)(basis, clusters.glyphs[cluster.packet], packet);
+            break;
     }
-    empty_unused(boxes.size(), packet);
+    empty_unused(cluster.count, packet.bounds);
+    for (int lane = 0; lane < cluster.count; ++lane) {
+        packet.primitive[lane] = clusters.order[cluster.first + static_cast<std::uint32_t>(lane)];
+    }
+}
+
+void prepare(const Basis& basis, const BoxLanes& boxes, std::size_t used, BoundsPacket& packet) {
+    HWY_DYNAMIC_DISPATCH(prepare_boxes)(basis, boxes, packet);
+    empty_unused(used, packet);
 }
 
 }  // namespace ink
+
+#endif

@@ -6,7 +6,6 @@
 
 #include "accel/clusters.h"
 #include "accel/projection.h"
-#include "base/bounds.h"
 #include "base/lanes.h"
 
 namespace ink {
@@ -43,32 +42,45 @@ struct TriangleForm {
     float u, v, z, gx, gy, w, wx, wy, near, far;
 };
 
-/// Sixteen of them. Bounds are asked for all lanes at once, forms one by one.
-template <class Form>
-struct FormPacket {
+/// A glyph as a camera sees it: in the coordinates of its unit shape, with d = q - (u, v), the ray
+/// through q is p + s (ahead + turn p), where p = right d.x + down d.y lies on the plane through
+/// the glyph's middle that faces the camera, and s is the depth beyond that plane, at z.
+struct GlyphForm {
+    float u, v, z;
+    std::array<float, 3> right, down, ahead;
+    float turn;
+};
+
+/// The primitives of a cluster as a camera sees them, each number for all sixteen side by side.
+struct ScreenPacket {
     BoundsPacket bounds;
-    std::array<Form, kLanes> forms;
-};
-using SpherePacket = FormPacket<SphereForm>;
-using TrianglePacket = FormPacket<TriangleForm>;
-
-/// What a hit needs of its primitive. With p the hit less `origin`, the normal is p (sphere) or
-/// `normal`, and the barycentric coordinates are p . u_axis and p . v_axis.
-struct alignas(64) HitRecord {
-    Vec3f origin;  ///< centre or first corner, scene frame
-    Vec3f normal{};
-    Vec3f u_axis{}, v_axis{};
-    std::uint32_t object = 0, primitive = 0;
-    bool is_sphere = false;
+    /// The numbers of SphereForm, TriangleForm or GlyphForm, in order.
+    std::array<Lanes<float>, sizeof(TriangleForm) / sizeof(float)> form;
+    /// What a hit needs of its primitive. Of a sphere its centre. Of a triangle its first corner,
+    /// normal, u and v axes: with p the hit less the corner, the barycentric coordinates are u . p
+    /// and v . p. Of a glyph the rows of the inverse of its placement's map.
+    std::array<Lanes<float>, 12> hit;
+    Lanes<std::uint32_t> primitive;
+    std::uint32_t object = 0;
+    ClusterKind kind = ClusterKind::spheres;
+    UnitShape shape{};  ///< of glyphs
 };
 
-/// `primitives` has an entry for each lane that is used, up to kLanes; `records` has kLanes.
-void prepare(const Projection& projection, const SphereLanes& spheres, std::uint32_t object,
-             std::span<const std::uint32_t> primitives, SpherePacket& packet, HitRecord* records);
-void prepare(const Projection& projection, const TriangleLanes& triangles, std::uint32_t object,
-             std::span<const std::uint32_t> primitives, TrianglePacket& packet, HitRecord* records);
+/// A projection's numbers by value, so that nothing that a loop writes can change them.
+struct Basis {
+    double rx, ry, rz, dx, dy, dz, fx, fy, fz;  ///< right, down, forward
+    double sx, sy, sz;                          ///< start
+    double start_depth, origin_step, slope_step;
+    bool orthographic;
 
-/// Screen bounds of sixteen boxes.
-void prepare(const Projection& projection, std::span<const Bounds3f> boxes, BoundsPacket& packet);
+    explicit Basis(const Projection& projection);
+};
+
+/// What the camera sees of a cluster.
+void prepare(const Basis& basis, const Clusters& clusters, const Cluster& cluster,
+             ScreenPacket& packet);
+
+/// Screen bounds of the first `used` of sixteen boxes.
+void prepare(const Basis& basis, const BoxLanes& boxes, std::size_t used, BoundsPacket& packet);
 
 }  // namespace ink

@@ -6,103 +6,22 @@
 #include <utility>
 #include <vector>
 
+#include "accel/bounds_pyramid.h"
 #include "accel/screen_kernels.h"
 #include "accel/screen_packets.h"
-#include "base/parallel.h"
 
 namespace ink {
 
 namespace {
 
-/// Screen bounds of all clusters, sixteen a packet, and above them levels of packets whose lanes
-/// bound a packet of the level below each. The last level is a single packet.
-class BoundsPyramid {
-  public:
-    BoundsPyramid(const Clusters& clusters, const Projection& projection, int threads);
-
-    /// Calls `found(cluster, depth)` for each cluster that reaches into the window.
-    template <class Found>
-    void search(const Window& window, const Found& found) const {
-        if (!levels_.empty()) search(levels_.size() - 1, 0, window, found);
-    }
-
-    void copy(std::uint32_t cluster, BoundsPacket& to, int lane) const {
-        const BoundsPacket& from = levels_[0][cluster / kLanes];
-        const int own = static_cast<int>(cluster % kLanes);
-        to.left[lane] = from.left[own];
-        to.right[lane] = from.right[own];
-        to.top[lane] = from.top[own];
-        to.bottom[lane] = from.bottom[own];
-        to.depth[lane] = from.depth[own];
-    }
-
-  private:
-    template <class Found>
-    void search(std::size_t level, std::size_t packet, const Window& window,
-                const Found& found) const {
-        const BoundsPacket& bounds = levels_[level][packet];
-        for (LaneBits lanes = overlap(bounds, window); lanes != 0; lanes &= lanes - 1) {
-            const int lane = std::countr_zero(lanes);
-            const std::size_t child = packet * kLanes + static_cast<std::size_t>(lane);
-            if (level == 0) {
-                found(static_cast<std::uint32_t>(child), bounds.depth[lane]);
-            } else {
-                search(level - 1, child, window, found);
-            }
-        }
-    }
-
-    std::vector<std::vector<BoundsPacket>> levels_;
-};
-
-std::size_t packets_for(std::size_t count) { return (count + kLanes - 1) / kLanes; }
-
-void set_union(const BoundsPacket& of, BoundsPacket& packet, int lane) {
-    packet.left[lane] = *std::ranges::min_element(of.left);
-    packet.top[lane] = *std::ranges::min_element(of.top);
-    packet.right[lane] = *std::ranges::max_element(of.right);
-    packet.bottom[lane] = *std::ranges::max_element(of.bottom);
-    packet.depth[lane] = *std::ranges::min_element(of.depth);
-}
-
-BoundsPyramid::BoundsPyramid(const Clusters& clusters, const Projection& projection, int threads) {
-    const std::size_t count = clusters.clusters.size();
-    if (count == 0) return;
-    levels_.emplace_back(packets_for(count));
-    constexpr std::size_t kChunk = 256;  // packets that a thread does in one go
-    const auto for_packets = [&](std::vector<BoundsPacket>& level, const auto& body) {
-        parallel_for((level.size() + kChunk - 1) / kChunk, threads,
-                     [&](std::size_t i, std::size_t) {
-                         for (std::size_t k = i * kChunk;
-                              k < std::min((i + 1) * kChunk, level.size()); ++k) {
-                             body(k, level[k]);
-                         }
-                     });
-    };
-    for_packets(levels_[0], [&](std::size_t k, BoundsPacket& packet) {
-        const std::size_t first = k * kLanes;
-        const std::size_t used = std::min<std::size_t>(kLanes, count - first);
-        std::array<Bounds3f, kLanes> boxes;
-        for (std::size_t i = 0; i < used; ++i) boxes[i] = clusters.clusters[first + i].bounds;
-        prepare(projection, std::span(boxes).first(used), packet);
-    });
-    while (levels_.back().size() > 1) {
-        std::vector<BoundsPacket> above(packets_for(levels_.back().size()));
-        const std::vector<BoundsPacket>& below = levels_.back();
-        for_packets(above, [&](std::size_t k, BoundsPacket& packet) {
-            packet = BoundsPacket::none();
-            for (std::size_t i = k * kLanes; i < std::min((k + 1) * kLanes, below.size()); ++i) {
-                set_union(below[i], packet, static_cast<int>(i % kLanes));
-            }
-        });
-        levels_.push_back(std::move(above));
-    }
-}
-
 /// What all tiles share.
 struct View {
+    View(const Clusters& all, const Projection& seen_by)
+        : clusters(all), projection(seen_by), basis(seen_by), pyramid(all, basis) {}
+
     const Clusters& clusters;
     Projection projection;
+    Basis basis;
     BoundsPyramid pyramid;
 
     Window window(const ScreenBox& box) const {
@@ -112,81 +31,172 @@ struct View {
     }
 };
 
-/// Where surfaces of several objects coincide, rounding would choose between them anew at every
-/// pixel. So each object lies a hair behind the one before it: enough to outweigh rounding, in a
-/// scene of size 1, and less than the thousandth of a pixel of a large picture. After so many
-/// objects it begins anew.
-constexpr float kSetBack = 1e-6F;
-constexpr std::uint32_t kSetBacks = 16;
+/// The clusters that reach into a part of the screen, nearest first. They are found as far back as
+/// they are asked for: what lies behind all that is seen is never looked at.
+class Candidates {
+  public:
+    explicit Candidates(const View& view) : view_(view) {}
 
-void set_back(float by, SpherePacket& packet) {
-    for (SphereForm& form : packet.forms) form.z += by;
+    void enter(const Window& window);
+
+    /// Sixteen of them, of which only the last packet may have fewer.
+    std::size_t packets() const { return bounds_.size(); }
+    std::size_t count() const { return found_.size(); }
+    /// Finds another packet, if there is one that begins nearer than `farthest`.
+    bool find_more(float farthest);
+
+    const BoundsPacket& bounds(std::size_t packet) const { return bounds_[packet]; }
+    BoundsPacket& bounds(std::size_t packet) { return bounds_[packet]; }
+    float depth(std::size_t i) const { return found_[i].depth; }
+    std::uint32_t cluster(std::size_t i) const { return found_[i].index; }
+
+    /// False only if nothing reaches into the window.
+    bool reach(const Window& window) const {
+        return std::ranges::any_of(
+            coarse_, [&](const BoundsPacket& bounds) { return overlap(bounds, window) != 0; });
+    }
+
+  private:
+    /// A cluster (level 0), or a packet of the level below.
+    struct Node {
+        float depth;
+        std::uint32_t index;
+        int level;
+
+        /// Boxes before what is in them, so that the order of clusters is always the same.
+        bool comes_after(const Node& other) const {
+            if (depth != other.depth) return depth > other.depth;
+            if (level != other.level) return level < other.level;
+            return index > other.index;
+        }
+    };
+    static bool after(const Node& a, const Node& b) { return a.comes_after(b); }
+
+    template <class Found>
+    void open(int level, std::size_t packet, const Found& found) const;
+    void gather(int level, std::size_t packet);
+    bool next();
+
+    const View& view_;
+    Window window_{};
+    std::vector<Node> heap_;            ///< not opened yet
+    std::vector<Node> found_;           ///< clusters
+    std::vector<BoundsPacket> bounds_;  ///< of the clusters
+    std::vector<BoundsPacket> coarse_;  ///< of what the search began with
+    std::size_t coarse_count_ = 0;
+};
+
+void put(const BoundsPacket& from, int lane, std::size_t place, std::vector<BoundsPacket>& to) {
+    const int own = static_cast<int>(place % kLanes);
+    if (own == 0) to.push_back(BoundsPacket::none());
+    BoundsPacket& last = to.back();
+    last.left[own] = from.left[lane];
+    last.right[own] = from.right[lane];
+    last.top[own] = from.top[lane];
+    last.bottom[own] = from.bottom[lane];
+    last.depth[own] = from.depth[lane];
 }
 
-void set_back(float by, TrianglePacket& packet) {
-    for (TriangleForm& form : packet.forms) {
-        form.z += by;
-        form.far += by;
+/// Calls `found(node, bounds, lane)` for what a packet holds and reaches into the window.
+template <class Found>
+void Candidates::open(int level, std::size_t packet, const Found& found) const {
+    const BoundsPacket& bounds = view_.pyramid.at(level, packet);
+    for (LaneBits lanes = overlap(bounds, window_); lanes != 0; lanes &= lanes - 1) {
+        const int lane = std::countr_zero(lanes);
+        const std::size_t child = packet * kLanes + static_cast<std::size_t>(lane);
+        found(Node{bounds.depth[lane], static_cast<std::uint32_t>(child), level}, bounds, lane);
     }
+}
+
+void Candidates::enter(const Window& window) {
+    window_ = window;
+    heap_.clear();
+    found_.clear();
+    bounds_.clear();
+    coarse_.clear();
+    coarse_count_ = 0;
+    if (view_.pyramid.top() < 0) return;
+    gather(view_.pyramid.top(), 0);
+    std::ranges::make_heap(heap_, after);
+}
+
+/// Begins with boxes that are small on the screen.
+void Candidates::gather(int level, std::size_t packet) {
+    constexpr float kSmall = 16.0F;  // pixels
+    open(level, packet, [&](const Node& node, const BoundsPacket& bounds, int lane) {
+        const bool small = bounds.right[lane] - bounds.left[lane] < kSmall &&
+                           bounds.bottom[lane] - bounds.top[lane] < kSmall;
+        if (level > 0 && !small) return gather(level - 1, node.index);
+        heap_.push_back(node);
+        put(bounds, lane, coarse_count_++, coarse_);
+    });
+}
+
+bool Candidates::find_more(float farthest) {
+    if (heap_.empty() || !(heap_.front().depth < farthest)) return false;
+    const std::size_t before = found_.size();
+    while (found_.size() < before + kLanes && next()) {
+    }
+    return found_.size() > before;
+}
+
+/// Finds the next cluster.
+bool Candidates::next() {
+    while (!heap_.empty()) {
+        std::ranges::pop_heap(heap_, after);
+        const Node node = heap_.back();
+        heap_.pop_back();
+        if (node.level == 0) {
+            put(view_.pyramid.at(0, node.index / kLanes), static_cast<int>(node.index % kLanes),
+                found_.size(), bounds_);
+            found_.push_back(node);
+            return true;
+        }
+        open(node.level - 1, node.index, [&](const Node& child, const BoundsPacket&, int) {
+            heap_.push_back(child);
+            std::ranges::push_heap(heap_, after);
+        });
+    }
+    return false;
 }
 
 class ScreenTileTracer final : public TileTracer {
   public:
-    explicit ScreenTileTracer(const View& view) : view_(view) {}
+    explicit ScreenTileTracer(const View& view) : view_(view), candidates_(view) {}
 
-    void enter(const ScreenBox& area) override;
+    void enter(const ScreenBox& area) override {
+        candidates_.enter(view_.window(area));
+        prepared_.clear();
+        used_ = 0;
+    }
     void intersect(std::span<const PointPacket> points, std::span<const RayPacket> rays,
                    std::span<HitPacket> hits) override;
+    void intersect(const BlockRaster& raster, std::span<const PointPacket> points,
+                   std::span<const RayPacket> rays, std::span<HitPacket> hits) override;
     void identify(std::span<const PointPacket> points, std::span<const RayPacket> rays,
                   std::span<HitPacket> hits) override;
     bool needs_rays() const override { return false; }
-    bool reaches(const ScreenBox& box) const override;
+    bool reaches(const ScreenBox& box) const override {
+        return candidates_.reach(view_.window(box));
+    }
 
   private:
-    /// A cluster that reaches into the area.
-    struct Candidate {
-        float depth;
-        std::uint32_t cluster;
-        std::uint32_t packet = kNotYet;  ///< index into the packets of its kind
-        std::uint32_t first_record = 0;
-    };
     static constexpr std::uint32_t kNotYet = 0xFFFFFFFFU;
 
     void find_front(Front& front);
-    void test(std::size_t i, Front& front);
-    template <class PrimitiveLanes, class Packet>
-    void test(const PrimitiveLanes& primitives, const Cluster& cluster, std::size_t i,
-              std::vector<Packet>& packets, std::uint32_t& used, Front& front);
+    void find_fronts(const FrontRaster& raster, std::size_t cells);
+    std::uint32_t packet_of(std::size_t candidate);
 
     const View& view_;
-    std::vector<Candidate> candidates_;  ///< nearest first
-    std::vector<BoundsPacket> bounds_;   ///< of the candidates
-    // What is made of a candidate when a ray first comes near. Vectors keep their size from area to
-    // area; the counts say how much of them is in use.
-    std::vector<SpherePacket> spheres_;
-    std::vector<TrianglePacket> triangles_;
-    std::vector<HitRecord> records_;
-    std::uint32_t spheres_used_ = 0, triangles_used_ = 0, records_used_ = 0;
+    Candidates candidates_;
+    /// A candidate: what was made of it when a ray first came near, index into `packets_`.
+    std::vector<std::uint32_t> prepared_;
+    /// It keeps its size from area to area; the count says how much of it is in use.
+    std::vector<ScreenPacket> packets_;
+    std::uint32_t used_ = 0;
+    std::vector<Front> fronts_;
+    std::vector<float> farthest_;  ///< of the cells of a raster
 };
-
-void ScreenTileTracer::enter(const ScreenBox& area) {
-    const Window window = view_.window(area);
-    candidates_.clear();
-    spheres_used_ = 0;
-    triangles_used_ = 0;
-    records_used_ = 0;
-    view_.pyramid.search(window, [&](std::uint32_t cluster, float depth) {
-        candidates_.push_back({depth, cluster});
-    });
-    std::ranges::sort(candidates_, [](const Candidate& a, const Candidate& b) {
-        return a.depth != b.depth ? a.depth < b.depth : a.cluster < b.cluster;
-    });
-    bounds_.assign(packets_for(candidates_.size()), BoundsPacket::none());
-    for (std::size_t i = 0; i < candidates_.size(); ++i) {
-        view_.pyramid.copy(candidates_[i].cluster, bounds_[i / kLanes],
-                           static_cast<int>(i % kLanes));
-    }
-}
 
 void ScreenTileTracer::intersect(std::span<const PointPacket> points,
                                  std::span<const RayPacket> rays, std::span<HitPacket> hits) {
@@ -194,7 +204,7 @@ void ScreenTileTracer::intersect(std::span<const PointPacket> points,
     for (std::size_t k = 0; k < points.size(); ++k) {
         front.start(view_.projection, points[k]);
         find_front(front);
-        resolve(front, rays[k], records_.data(), hits[k]);
+        resolve(front, rays[k], packets_.data(), hits[k]);
     }
 }
 
@@ -204,64 +214,93 @@ void ScreenTileTracer::identify(std::span<const PointPacket> points,
     for (std::size_t k = 0; k < points.size(); ++k) {
         front.start(view_.projection, points[k]);
         find_front(front);
-        ink::identify(front, records_.data(), hits[k]);
+        ink::identify(front, packets_.data(), hits[k]);
     }
 }
 
-bool ScreenTileTracer::reaches(const ScreenBox& box) const {
-    const Window window = view_.window(box);
-    return std::ranges::any_of(
-        bounds_, [&](const BoundsPacket& bounds) { return overlap(bounds, window) != 0; });
+void ScreenTileTracer::intersect(const BlockRaster& raster, std::span<const PointPacket> points,
+                                 std::span<const RayPacket> rays, std::span<HitPacket> hits) {
+    fronts_.resize(std::max(fronts_.size(), points.size()));
+    for (std::size_t k = 0; k < points.size(); ++k) fronts_[k].start(view_.projection, points[k]);
+    farthest_.assign(raster.packet_at.size(), -kInfinity);
+    for (std::size_t cell = 0; cell < raster.packet_at.size(); ++cell) {
+        const std::uint32_t k = raster.packet_at[cell];
+        if (k != BlockRaster::kNone) farthest_[cell] = fronts_[k].window.farthest;
+    }
+    find_fronts({raster.left - view_.projection.centre.x, raster.top - view_.projection.centre.y,
+                 1.0F / raster.side, raster.across, raster.down, raster.packet_at.data(),
+                 farthest_.data(), fronts_.data()},
+                raster.packet_at.size());
+    for (std::size_t k = 0; k < points.size(); ++k) {
+        resolve(fronts_[k], rays[k], packets_.data(), hits[k]);
+    }
 }
 
-void ScreenTileTracer::find_front(Front& front) {
-    for (std::size_t k = 0; k < bounds_.size(); ++k) {
-        if (!(candidates_[k * kLanes].depth < front.window.farthest)) return;
-        for (LaneBits lanes = overlap(bounds_[k], front.window); lanes != 0; lanes &= lanes - 1) {
-            const int lane = std::countr_zero(lanes);
-            const std::size_t i = k * kLanes + static_cast<std::size_t>(lane);
-            if (!(candidates_[i].depth < front.window.farthest)) return;
-            test(i, front);
+/// Cluster by cluster instead of point by point: each is looked at once, not by every block that
+/// it reaches into.
+void ScreenTileTracer::find_fronts(const FrontRaster& raster, std::size_t cells) {
+    const std::span farthest(raster.farthest, cells);
+    const auto cell = [&](float at, float from, int count) {
+        const float place = (at - from) * raster.cells_per_pixel;
+        return static_cast<int>(std::clamp(place, 0.0F, static_cast<float>(count - 1)));
+    };
+    for (std::size_t k = 0;; ++k) {
+        const float most = *std::ranges::max_element(farthest);
+        if (k == candidates_.packets() && !candidates_.find_more(most)) return;
+        const std::size_t end = std::min((k + 1) * kLanes, candidates_.count());
+        if (!(candidates_.depth(k * kLanes) < most)) return;
+        for (std::size_t i = k * kLanes; i < end; ++i) {
+            const BoundsPacket& bounds = candidates_.bounds(k);
+            const int lane = static_cast<int>(i % kLanes);
+            const int left = cell(bounds.left[lane], raster.left, raster.across);
+            const int right = cell(bounds.right[lane], raster.left, raster.across);
+            const int top = cell(bounds.top[lane], raster.top, raster.down);
+            const int bottom = cell(bounds.bottom[lane], raster.top, raster.down);
+            const float depth = bounds.depth[lane];
+            bool hidden = true;
+            for (int row = top; row <= bottom && hidden; ++row) {
+                const float* cells_of_row = raster.farthest + row * raster.across;
+                hidden = std::none_of(cells_of_row + left, cells_of_row + right + 1,
+                                      [&](float behind) { return depth < behind; });
+            }
+            if (!hidden) ink::intersect(view_.basis, packets_.data(), packet_of(i), raster);
         }
     }
 }
 
-void ScreenTileTracer::test(std::size_t i, Front& front) {
-    const Clusters& clusters = view_.clusters;
-    const Cluster& cluster = clusters.clusters[candidates_[i].cluster];
-    if (cluster.kind == ClusterKind::spheres) {
-        test(clusters.spheres[cluster.packet], cluster, i, spheres_, spheres_used_, front);
-    } else {
-        test(clusters.triangles[cluster.packet], cluster, i, triangles_, triangles_used_, front);
+void ScreenTileTracer::find_front(Front& front) {
+    for (std::size_t k = 0;; ++k) {
+        if (k == candidates_.packets() && !candidates_.find_more(front.window.farthest)) return;
+        if (!(candidates_.depth(k * kLanes) < front.window.farthest)) return;
+        for (LaneBits lanes = overlap(candidates_.bounds(k), front.window); lanes != 0;
+             lanes &= lanes - 1) {
+            const std::size_t i = k * kLanes + static_cast<std::size_t>(std::countr_zero(lanes));
+            if (!(candidates_.depth(i) < front.window.farthest)) return;
+            const std::uint32_t packet = packet_of(i);
+            ink::intersect(view_.basis, packets_.data(), packet, front);
+        }
     }
 }
 
-template <class PrimitiveLanes, class Packet>
-void ScreenTileTracer::test(const PrimitiveLanes& primitives, const Cluster& cluster, std::size_t i,
-                            std::vector<Packet>& packets, std::uint32_t& used, Front& front) {
-    Candidate& candidate = candidates_[i];
-    if (candidate.packet == kNotYet) {
-        if (used == packets.size()) packets.emplace_back();
-        if (records_used_ == records_.size()) records_.resize(records_.size() + kLanes);
-        candidate.packet = used++;
-        candidate.first_record = records_used_;
-        records_used_ += kLanes;
-        prepare(view_.projection, primitives, cluster.object,
-                std::span(view_.clusters.order).subspan(cluster.first, cluster.count),
-                packets[candidate.packet], records_.data() + candidate.first_record);
-        // Closer than those of the cluster's box.
-        set_union(packets[candidate.packet].bounds, bounds_[i / kLanes],
-                  static_cast<int>(i % kLanes));
-        set_back(kSetBack * static_cast<float>(cluster.object % kSetBacks),
-                 packets[candidate.packet]);
-    }
-    ink::intersect(view_.projection, packets[candidate.packet], candidate.first_record, front);
+std::uint32_t ScreenTileTracer::packet_of(std::size_t candidate) {
+    if (prepared_.size() < candidates_.count()) prepared_.resize(candidates_.count(), kNotYet);
+    std::uint32_t& index = prepared_[candidate];
+    if (index != kNotYet) return index;
+    if (used_ == packets_.size()) packets_.resize(packets_.size() + kLanes);
+    index = used_++;
+    ScreenPacket& packet = packets_[index];
+    prepare(view_.basis, view_.clusters, view_.clusters.clusters[candidates_.cluster(candidate)],
+            packet);
+    // Closer than those of the cluster's box.
+    set_union(packet.bounds, candidates_.bounds(candidate / kLanes),
+              static_cast<int>(candidate % kLanes));
+    return index;
 }
 
 class ScreenFrameTracer final : public FrameTracer {
   public:
-    ScreenFrameTracer(const Clusters& clusters, const Projection& projection, int threads)
-        : view_{clusters, projection, BoundsPyramid(clusters, projection, threads)} {}
+    ScreenFrameTracer(const Clusters& clusters, const Projection& projection)
+        : view_(clusters, projection) {}
 
     std::unique_ptr<TileTracer> tile_tracer() const override {
         return std::make_unique<ScreenTileTracer>(view_);
@@ -274,8 +313,8 @@ class ScreenFrameTracer final : public FrameTracer {
 }  // namespace
 
 std::unique_ptr<FrameTracer> make_screen_tracer(const Clusters& clusters,
-                                                const Projection& projection, int threads) {
-    return std::make_unique<ScreenFrameTracer>(clusters, projection, threads);
+                                                const Projection& projection) {
+    return std::make_unique<ScreenFrameTracer>(clusters, projection);
 }
 
 }  // namespace ink

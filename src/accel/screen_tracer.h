@@ -19,6 +19,6 @@ namespace ink {
 /// of their common edge, so that no ray passes between them. A hit depends on the ray's point
 /// alone, not on tiles or packets.
 std::unique_ptr<FrameTracer> make_screen_tracer(const Clusters& clusters,
-                                                const Projection& projection, int threads);
+                                                const Projection& projection);
 
 }  // namespace ink

@@ -57,6 +57,13 @@ class MergedTileTracer final : public TileTracer {
         second_->intersect(points, rays, others_);
         for (std::size_t k = 0; k < hits.size(); ++k) take_nearer(others_[k], hits[k]);
     }
+    void intersect(const BlockRaster& raster, std::span<const PointPacket> points,
+                   std::span<const RayPacket> rays, std::span<HitPacket> hits) override {
+        others_.resize(hits.size());
+        first_->intersect(raster, points, rays, hits);
+        second_->intersect(raster, points, rays, others_);
+        for (std::size_t k = 0; k < hits.size(); ++k) take_nearer(others_[k], hits[k]);
+    }
     bool reaches(const ScreenBox& box) const override {
         return first_->reaches(box) || second_->reaches(box);
     }
@@ -93,10 +100,7 @@ class MergedFrameTracer final : public FrameTracer {
     std::unique_ptr<FrameTracer> first_, second_;
 };
 
-bool has_screen_form(const Object& object) {
-    return std::holds_alternative<Spheres>(object.shape) ||
-           std::holds_alternative<Mesh>(object.shape);
-}
+bool on_screen(const Object& object) { return has_screen_form(object.shape); }
 
 /// Embree's hierarchy, built when it is first asked for.
 class LazyEmbree {
@@ -123,7 +127,7 @@ class SceneTracer final : public Tracer {
         : scene_(scene),
           clusters_(scene),
           all_(scene, {}),
-          others_(scene, [](const Object& object) { return !has_screen_form(object); }) {}
+          others_(scene, [](const Object& object) { return !on_screen(object); }) {}
 
     void intersect(std::span<const RayPacket> rays, std::span<HitPacket> hits,
                    Coherence coherence) const override {
@@ -141,11 +145,11 @@ class SceneTracer final : public Tracer {
 
     std::unique_ptr<FrameTracer> frame(const Projection& projection, int threads) const override {
         const auto objects = std::span(scene_.objects());
-        if (!projection.sees_all() || std::ranges::none_of(objects, has_screen_form)) {
+        if (!projection.sees_all() || std::ranges::none_of(objects, on_screen)) {
             return all_.get().frame(projection, threads);
         }
-        auto screen = make_screen_tracer(clusters_, projection, threads);
-        if (std::ranges::all_of(objects, has_screen_form)) return screen;
+        auto screen = make_screen_tracer(clusters_, projection);
+        if (std::ranges::all_of(objects, on_screen)) return screen;
         return std::make_unique<MergedFrameTracer>(std::move(screen),
                                                    others_.get().frame(projection, threads));
     }

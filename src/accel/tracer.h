@@ -64,6 +64,15 @@ struct ScreenBox {
     float left, top, right, bottom;  ///< pixels
 };
 
+/// Packets of points that are the cells of a raster on the screen.
+struct BlockRaster {
+    static constexpr std::uint32_t kNone = 0xFFFFFFFFU;
+
+    float left, top, side;  ///< of the first cell, pixels; points keep off the edges of their cell
+    int across, down;       ///< cells
+    std::span<const std::uint32_t> packet_at;  ///< a cell, row by row: its packet, or kNone
+};
+
 /// Traces camera rays of one picture, one thread's share of them.
 class TileTracer {
   public:
@@ -76,6 +85,12 @@ class TileTracer {
     /// length.
     virtual void intersect(std::span<const PointPacket> points, std::span<const RayPacket> rays,
                            std::span<HitPacket> hits) = 0;
+
+    /// The same for packets that lie on a raster.
+    virtual void intersect(const BlockRaster& /*raster*/, std::span<const PointPacket> points,
+                           std::span<const RayPacket> rays, std::span<HitPacket> hits) {
+        intersect(points, rays, hits);
+    }
 
     /// Finds t, object and primitive of the hits and no more. Rays may be left out unless
     /// `needs_rays`.
@@ -132,9 +147,9 @@ std::unique_ptr<Tracer> make_embree_tracer(const Scene& scene,
                                            PacketWidth width = PacketWidth::widest,
                                            const ObjectFilter& wanted = {});
 
-/// Spheres and triangles on camera rays by what the screen shows of them (accel/screen_tracer.h),
-/// the rest by Embree, whose hierarchy is built when it is first needed. The scene must outlive the
-/// tracer.
+/// Camera rays by what the screen shows of the scene (accel/screen_tracer.h), where shapes have a
+/// form for that, the rest by Embree, whose hierarchy is built when it is first needed. The scene
+/// must outlive the tracer.
 std::unique_ptr<Tracer> make_tracer(const Scene& scene);
 
 /// Tests every ray against every primitive in double precision: the oracle for the other tracers.

@@ -64,7 +64,8 @@ class Sampler {
 
   private:
     void place_stencils(Block block, Vec2f offset, std::span<const Vec2f> stencil);
-    void trace(std::span<HitPacket> hits);
+    BlockRaster raster_of(std::span<const Block> blocks, Vec2f offset);
+    void trace(std::span<HitPacket> hits, const BlockRaster* raster = nullptr);
     void count_rays();
     bool entered(const ScreenBox& box) const;
     void sort_by_place(std::span<const Vec2f> points, const ScreenBox& box);
@@ -75,6 +76,7 @@ class Sampler {
     ScreenBox area_{kInfinity, kInfinity, -kInfinity, -kInfinity};
     std::vector<PointPacket> points_;
     std::vector<RayPacket> packets_;
+    std::vector<std::uint32_t> cells_;  ///< of a raster of blocks
     std::vector<std::uint32_t> order_;
     std::vector<std::uint32_t> places_, starts_;  ///< of sort_by_place
     std::size_t rays_ = 0;

@@ -5,6 +5,7 @@
 #include <variant>
 
 #include "base/multiversion.h"
+#include "shading/smooth_normals.h"
 
 namespace ink {
 
@@ -198,51 +199,6 @@ void Shader::interpolate(const HitPacket& hits, const std::uint32_t* Surface::*s
         const std::uint32_t* packed = surfaces_[k].*source;
         const bool seen = std::ranges::find(hits.object, k) != hits.object.end();
         if (seen && packed != nullptr) interpolate_normals(packed, k, hits, normals);
-    }
-}
-
-/// Corner normals interpolated over the triangle, on the side of the geometric normal. They are
-/// unpacked (unpack_normal, scene/mesh.h) but not scaled to unit length first: that shifts the
-/// weights of corners a little, alike on both sides of an edge, and saves three square roots.
-INKTRACE_MULTIVERSION
-void Shader::interpolate_normals(const std::uint32_t* corner_normals, std::uint32_t object,
-                                 const HitPacket& hits, NormalPacket& normals) {
-    std::array<Lanes<std::uint32_t>, 3> packed;
-    for (int i = 0; i < kLanes; ++i) {
-        const std::size_t first =
-            hits.object[i] == object ? std::size_t{3} * hits.primitive[i] : std::size_t{0};
-        for (std::size_t k = 0; k < 3; ++k) packed[k][i] = corner_normals[first + k];
-    }
-    NormalPacket sum{};
-    for (std::size_t k = 0; k < 3; ++k) {
-        for (int i = 0; i < kLanes; ++i) {
-            constexpr float kOne = 32767.0F;
-            const auto low = static_cast<std::int32_t>(packed[k][i] & 0xFFFFU);
-            const auto high = static_cast<std::int32_t>(packed[k][i] >> 16U);
-            const float x = static_cast<float>(low) - kOne;
-            const float y = static_cast<float>(high) - kOne;
-            const float z = kOne - std::abs(x) - std::abs(y);
-            const float fold = std::max(-z, 0.0F);
-            const float u = hits.u[i];
-            const float v = hits.v[i];
-            const float weight = k == 0 ? 1.0F - u - v : k == 1 ? u : v;
-            sum.x[i] += weight * (x - std::copysign(fold, x));
-            sum.y[i] += weight * (y - std::copysign(fold, y));
-            sum.z[i] += weight * z;
-        }
-    }
-    for (int i = 0; i < kLanes; ++i) {
-        const float x = sum.x[i];
-        const float y = sum.y[i];
-        const float z = sum.z[i];
-        const float side = x * normals.x[i] + y * normals.y[i] + z * normals.z[i];
-        // Opposite corner normals can cancel; the geometric normal stands in.
-        const float squared = x * x + y * y + z * z;
-        const bool use = squared > 1e3F && hits.object[i] == object;
-        const float scale = std::copysign(1.0F, side) / std::sqrt(use ? squared : 1.0F);
-        normals.x[i] = use ? x * scale : normals.x[i];
-        normals.y[i] = use ? y * scale : normals.y[i];
-        normals.z[i] = use ? z * scale : normals.z[i];
     }
 }
 

@@ -99,9 +99,6 @@ class Shader {
     /// `source` is one of a surface's two arrays of normals.
     void interpolate(const HitPacket& hits, const std::uint32_t* Surface::*source,
                      NormalPacket& normals) const;
-    /// For the lanes that hit `object`.
-    static void interpolate_normals(const std::uint32_t* corner_normals, std::uint32_t object,
-                                    const HitPacket& hits, NormalPacket& normals);
     std::vector<Surface> surfaces_;
     bool any_smooth_ = false;        ///< has normals at corners
     bool any_line_normals_ = false;  ///< has line normals other than its corner normals
