@@ -1,5 +1,6 @@
 #include "accel/screen_kernels.h"
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 
@@ -101,12 +102,12 @@ HWY_INLINE void settle(Vector depth, Mask around, Name name, int i, Front& front
 }
 
 /// Takes the hits that lie in front of what there is; `slack`: how near to it they count as one
-/// with it.
-HWY_INLINE bool keep_nearer(Vector depth, Mask covered, float slack, Name name, int i,
+/// with it. There is no branch that depends on what is hit, except where surfaces coincide: a wrong
+/// guess costs as much as the test.
+HWY_INLINE void keep_nearer(Vector depth, Mask covered, float slack, Name name, int i,
                             Front& front) {
     const auto before = load(front.depth, i);
     const auto hit = hn::And(covered, hn::Le(depth, hn::Add(before, set(slack))));
-    if (hn::AllFalse(kFloats, hit)) return false;
     const auto nearer = hn::And(hit, hn::Lt(depth, hn::Sub(before, set(slack))));
     const auto around = hn::AndNot(nearer, hit);
     hn::Store(hn::IfThenElse(nearer, depth, before), kFloats, front.depth.data() + i);
@@ -114,15 +115,6 @@ HWY_INLINE bool keep_nearer(Vector depth, Mask covered, float slack, Name name, 
                                         hn::Set(kIndices, name.winner), load(front.winner, i));
     hn::Store(winners, kIndices, front.winner.data() + i);
     if (HWY_UNLIKELY(!hn::AllFalse(kFloats, around))) settle(depth, around, name, i, front);
-    return true;
-}
-
-HWY_INLINE bool all_hit(const Front& front) {
-    auto hit = hn::Lt(load(front.depth, 0), set(kInfinity));
-    for (int i = kStep; i < kLanes; i += kStep) {
-        hit = hn::And(hit, hn::Lt(load(front.depth, i), set(kInfinity)));
-    }
-    return hn::AllTrue(kFloats, hit);
 }
 
 // ---- Spheres ----
@@ -131,10 +123,13 @@ struct SphereTest {
     SphereForm form;
     float origin_step, slope_step;
 
-    HWY_INLINE bool operator()(Name name, Front& front) const {
+    HWY_INLINE Mask may_cover(Mask cells, Vector /*left*/, Vector /*top*/, float /*side*/) const {
+        return cells;
+    }
+
+    HWY_INLINE void operator()(Name name, Front& front) const {
         const auto origin = set(origin_step);
         const auto slope = set(slope_step);
-        bool changed = false;
         for (int i = 0; i < kLanes; i += kStep) {
             const auto qx = load(front.x, i);
             const auto qy = load(front.y, i);
@@ -145,16 +140,15 @@ struct SphereTest {
             const auto h =
                 hn::Sub(set(form.f), hn::Add(across, hn::Mul(set(form.c), hn::Mul(dy, dy))));
             const auto covered = hn::Gt(h, hn::Zero(kFloats));
-            if (hn::AllFalse(kFloats, covered)) continue;
             const auto along_x =
                 hn::Mul(hn::Mul(qx, slope), hn::Sub(set(form.x), hn::Mul(qx, origin)));
             const auto along_y =
                 hn::Mul(hn::Mul(qy, slope), hn::Sub(set(form.y), hn::Mul(qy, origin)));
             const auto m = hn::Add(hn::Add(set(form.z), along_x), along_y);
-            const auto depth = hn::Mul(hn::Sub(m, hn::Sqrt(h)), load(front.foreshortening, i));
-            changed |= keep_nearer(depth, covered, 0.0F, name, i, front);
+            const auto depth = hn::Mul(hn::Sub(m, hn::Sqrt(hn::Max(h, hn::Zero(kFloats)))),
+                                       load(front.foreshortening, i));
+            keep_nearer(depth, covered, 0.0F, name, i, front);
         }
-        return changed;
     }
 };
 
@@ -165,11 +159,26 @@ HWY_INLINE Vector edge_value(const TriangleForm::Edge& edge, Vector qx, Vector q
                    hn::Mul(set(edge.dy), hn::Sub(qx, set(edge.x))));
 }
 
+/// Share of its terms that an edge's value may be rounded by.
+constexpr float kRounding = 1e-6F;
+
 struct TriangleTest {
     TriangleForm form;
 
-    HWY_INLINE bool operator()(Name name, Front& front) const {
-        bool changed = false;
+    /// Those of the cells that are not beyond an edge, by their corner that lies farthest inside.
+    HWY_INLINE Mask may_cover(Mask cells, Vector left, Vector top, float side) const {
+        for (const TriangleForm::Edge& edge : form.edges) {
+            const auto along = hn::Mul(set(edge.dx), hn::Sub(top, set(edge.y)));
+            const auto across = hn::Mul(set(edge.dy), hn::Sub(left, set(edge.x)));
+            const auto slack = hn::Mul(hn::Add(hn::Abs(along), hn::Abs(across)), set(kRounding));
+            const float most = (std::max(edge.dx, 0.0F) + std::max(-edge.dy, 0.0F)) * side;
+            const auto value = hn::Add(hn::Sub(along, across), set(most));
+            cells = hn::And(cells, hn::Ge(value, hn::Neg(slack)));
+        }
+        return cells;
+    }
+
+    HWY_INLINE void operator()(Name name, Front& front) const {
         for (int i = 0; i < kLanes; i += kStep) {
             const auto qx = load(front.x, i);
             const auto qy = load(front.y, i);
@@ -177,16 +186,14 @@ struct TriangleTest {
             const auto e1 = edge_value(form.edges[1], qx, qy);
             const auto e2 = edge_value(form.edges[2], qx, qy);
             const auto covered = hn::Ge(hn::Min(hn::Min(e0, e1), e2), hn::Zero(kFloats));
-            if (hn::AllFalse(kFloats, covered)) continue;
             const auto rise = hn::Add(hn::Mul(set(form.gx), hn::Sub(qx, set(form.u))),
                                       hn::Mul(set(form.gy), hn::Sub(qy, set(form.v))));
             const auto facing =
                 hn::Add(hn::Add(set(form.w), hn::Mul(set(form.wx), qx)), hn::Mul(set(form.wy), qy));
             const auto plane = hn::Add(set(form.z), hn::Div(rise, facing));
             const auto depth = hn::Min(hn::Max(plane, set(form.near)), set(form.far));
-            changed |= keep_nearer(depth, covered, kCoincident, name, i, front);
+            keep_nearer(depth, covered, kCoincident, name, i, front);
         }
-        return changed;
     }
 };
 
@@ -325,6 +332,10 @@ struct GlyphTest {
     float slope, middle;
     bool capped;
 
+    HWY_INLINE Mask may_cover(Mask cells, Vector /*left*/, Vector /*top*/, float /*side*/) const {
+        return cells;
+    }
+
     HWY_INLINE LocalHit meet(const LocalRays& rays) const {
         if constexpr (kKind == GlyphKind::ellipsoid) return meet_ball(rays);
         if constexpr (kKind == GlyphKind::box) return meet_box(rays);
@@ -335,17 +346,14 @@ struct GlyphTest {
         if constexpr (kKind == GlyphKind::rectangle) return meet_plane(rays, false);
     }
 
-    HWY_INLINE bool operator()(Name name, Front& front) const {
+    HWY_INLINE void operator()(Name name, Front& front) const {
         constexpr bool kRound = kKind == GlyphKind::ellipsoid || kKind == GlyphKind::frustum;
-        bool changed = false;
         for (int i = 0; i < kLanes; i += kStep) {
             const LocalRays rays = local_rays(form, load(front.x, i), load(front.y, i));
             const LocalHit hit = meet(rays);
-            if (hn::AllFalse(kFloats, hit.covered)) continue;
             const auto depth = hn::Add(set(form.z), hit.s);
-            changed |= keep_nearer(depth, hit.covered, kRound ? 0.0F : kCoincident, name, i, front);
+            keep_nearer(depth, hit.covered, kRound ? 0.0F : kCoincident, name, i, front);
         }
-        return changed;
     }
 };
 
@@ -398,71 +406,181 @@ HWY_INLINE void for_kind(const Basis& basis, const ScreenPacket& packet, const R
     }
 }
 
+/// Which of sixteen triangles are not beyond an edge from a window, by its corner that lies
+/// farthest inside; sixteen at a time what TriangleTest::may_cover says of one.
+HWY_INLINE LaneBits may_cover_window(const ScreenPacket& packet, const Window& window) {
+    const auto left = set(window.left);
+    const auto top = set(window.top);
+    const auto width = set(window.right - window.left);
+    const auto height = set(window.bottom - window.top);
+    const auto zero = hn::Zero(kFloats);
+    LaneBits all = 0;
+    for (int i = 0; i < kLanes; i += kStep) {
+        auto covers = hn::Eq(zero, zero);
+        for (std::size_t k = 0; k < 12; k += 4) {
+            const auto dx = load(packet.form[k + 2], i);
+            const auto dy = load(packet.form[k + 3], i);
+            const auto along = hn::Mul(dx, hn::Sub(top, load(packet.form[k + 1], i)));
+            const auto across = hn::Mul(dy, hn::Sub(left, load(packet.form[k], i)));
+            const auto slack = hn::Mul(hn::Add(hn::Abs(along), hn::Abs(across)), set(kRounding));
+            const auto most = hn::Add(hn::Mul(hn::Max(dx, zero), height),
+                                      hn::Mul(hn::Max(hn::Neg(dy), zero), width));
+            const auto value = hn::Add(hn::Sub(along, across), hn::Add(most, slack));
+            covers = hn::And(covers, hn::Ge(value, zero));
+        }
+        all |= bits(covers) << static_cast<unsigned>(i);
+    }
+    return all;
+}
+
 void intersect_front(const Basis& basis, const ScreenPacket* packets, std::uint32_t index,
                      Front& front) {
     const ScreenPacket& packet = packets[index];
     LaneBits lanes = overlap_lanes(packet.bounds, front.window);
     if (lanes == 0) return;
+    if (packet.kind == ClusterKind::triangles || packet.kind == ClusterKind::solids) {
+        lanes &= may_cover_window(packet, front.window);
+    }
     for_kind(basis, packet, [&](const auto& make) {
-        bool changed = false;
         for (; lanes != 0; lanes &= lanes - 1) {
             const int lane = std::countr_zero(lanes);
             const auto test = make(packet, lane);
-            changed |= test({packets, index * kLanes + static_cast<std::uint32_t>(lane)}, front);
+            test({packets, index * kLanes + static_cast<std::uint32_t>(lane)}, front);
         }
-        if (changed && all_hit(front)) front.window.farthest = most(front.depth);
     });
+    front.window.farthest = most(front.depth);
 }
 
-/// Cells of a raster that bounds reach into.
-struct Cells {
-    alignas(64) std::int32_t left[kLanes], right[kLanes], top[kLanes], bottom[kLanes];
+// ---- Rasters ----
 
-    HWY_INLINE Cells(const BoundsPacket& bounds, const FrontRaster& raster) {
-        const auto find = [&](const Lanes<float>& at, float from, int count, std::int32_t* cells) {
-            for (int i = 0; i < kLanes; i += kStep) {
-                const auto place =
-                    hn::Mul(hn::Sub(load(at, i), set(from)), set(raster.cells_per_pixel));
-                const auto cell =
-                    hn::Min(hn::Max(place, hn::Zero(kFloats)), set(static_cast<float>(count - 1)));
-                hn::Store(hn::ConvertTo(kIntegers, cell), kIntegers, cells + i);
-            }
+/// Bounds of one primitive.
+struct Reach {
+    float left, right, top, bottom, depth;
+
+    HWY_INLINE Reach(const BoundsPacket& bounds, int lane)
+        : left(bounds.left[lane]),
+          right(bounds.right[lane]),
+          top(bounds.top[lane]),
+          bottom(bounds.bottom[lane]),
+          depth(bounds.depth[lane]) {}
+};
+
+/// Groups of cells that bounds reach into.
+struct Groups {
+    int left, right, top, bottom;
+
+    HWY_INLINE Groups(const Reach& reach, const FrontRaster& raster) {
+        const float scale = 1.0F / (kBlockSide * raster.side);
+        const auto group = [&](float at, float from, int count) {
+            const float place = (at - from) * scale;
+            return static_cast<int>(std::min(std::max(place, 0.0F), static_cast<float>(count - 1)));
         };
-        find(bounds.left, raster.left, raster.across, left);
-        find(bounds.right, raster.left, raster.across, right);
-        find(bounds.top, raster.top, raster.down, top);
-        find(bounds.bottom, raster.top, raster.down, bottom);
+        left = group(reach.left, raster.left, raster.across);
+        right = group(reach.right, raster.left, raster.across);
+        top = group(reach.top, raster.top, raster.down);
+        bottom = group(reach.bottom, raster.top, raster.down);
     }
 };
+
+/// Upper left corners of the cells of a group, and which of them bounds reach into, before all that
+/// they see.
+struct GroupCells {
+    Vector left, top;
+    Mask reached;
+
+    HWY_INLINE GroupCells(const Reach& reach, const FrontRaster& raster, int column, int row,
+                          int i) {
+        const float x = raster.left + static_cast<float>(column * kBlockSide) * raster.side;
+        const float y = raster.top + static_cast<float>(row * kBlockSide) * raster.side;
+        const auto lane = hn::Iota(kIntegers, i);
+        const auto in_row = hn::And(lane, hn::Set(kIntegers, kBlockSide - 1));
+        const auto side = set(raster.side);
+        left = hn::Add(set(x), hn::Mul(hn::ConvertTo(kFloats, in_row), side));
+        top = hn::Add(set(y), hn::Mul(hn::ConvertTo(kFloats, hn::ShiftRight<2>(lane)), side));
+        const float* farthest = raster.farthest + (row * raster.across + column) * kLanes;
+        const auto across =
+            hn::And(hn::Le(set(reach.left), hn::Add(left, side)), hn::Ge(set(reach.right), left));
+        const auto down =
+            hn::And(hn::Le(set(reach.top), hn::Add(top, side)), hn::Ge(set(reach.bottom), top));
+        const auto before = hn::Lt(set(reach.depth), hn::Load(kFloats, farthest + i));
+        reached = hn::And(hn::And(across, down), before);
+    }
+};
+
+/// Tests a primitive against the fronts of a group.
+template <class Test>
+HWY_INLINE void test_group(const Test& test, Name name, const Reach& reach,
+                           const FrontRaster& raster, int column, int row) {
+    const int group = row * raster.across + column;
+    for (int i = 0; i < kLanes; i += kStep) {
+        const GroupCells cells(reach, raster, column, row, i);
+        const Mask live = test.may_cover(cells.reached, cells.left, cells.top, raster.side);
+        const LaneBits all = bits(live) << static_cast<unsigned>(i);
+        raster.dirty[group] |= all;
+        for (LaneBits left = all; left != 0; left &= left - 1) {
+            const int cell = group * kLanes + std::countr_zero(left);
+            test(name, raster.fronts[raster.front_at[cell]]);
+        }
+    }
+}
+
+/// Brings the farthest depths of cells up to date.
+HWY_INLINE void update_farthest(const FrontRaster& raster) {
+    for (int group = 0; group < raster.across * raster.down; ++group) {
+        for (LaneBits left = raster.dirty[group]; left != 0; left &= left - 1) {
+            const int cell = group * kLanes + std::countr_zero(left);
+            raster.farthest[cell] = most(raster.fronts[raster.front_at[cell]].depth);
+        }
+        raster.dirty[group] = 0;
+    }
+}
 
 void intersect_raster(const Basis& basis, const ScreenPacket* packets, std::uint32_t index,
                       const FrontRaster& raster) {
     const ScreenPacket& packet = packets[index];
-    const float width = static_cast<float>(raster.across) / raster.cells_per_pixel;
-    const float height = static_cast<float>(raster.down) / raster.cells_per_pixel;
-    const LaneBits all = overlap_lanes(packet.bounds, {raster.left, raster.left + width, raster.top,
-                                                       raster.top + height, kInfinity});
+    const float width = static_cast<float>(raster.across * kBlockSide) * raster.side;
+    const float height = static_cast<float>(raster.down * kBlockSide) * raster.side;
+    const Window window{raster.left, raster.left + width, raster.top, raster.top + height,
+                        kInfinity};
+    const LaneBits all = overlap_lanes(packet.bounds, window);
     if (all == 0) return;
-    const Cells cells(packet.bounds, raster);
     for_kind(basis, packet, [&](const auto& make) {
         for (LaneBits lanes = all; lanes != 0; lanes &= lanes - 1) {
             const int lane = std::countr_zero(lanes);
             const Name name{packets, index * kLanes + static_cast<std::uint32_t>(lane)};
-            const float nearest = packet.bounds.depth[lane];
+            const Reach reach(packet.bounds, lane);
+            const Groups groups(reach, raster);
             const auto test = make(packet, lane);
-            for (int row = cells.top[lane]; row <= cells.bottom[lane]; ++row) {
-                for (int column = cells.left[lane]; column <= cells.right[lane]; ++column) {
-                    const int cell = row * raster.across + column;
-                    if (!(nearest < raster.farthest[cell])) continue;
-                    Front& front = raster.fronts[raster.front_at[cell]];
-                    // As long as a ray hits nothing, the farthest depth stays infinite.
-                    if (test(name, front) && all_hit(front)) {
-                        raster.farthest[cell] = most(front.depth);
-                    }
+            for (int row = groups.top; row <= groups.bottom; ++row) {
+                for (int column = groups.left; column <= groups.right; ++column) {
+                    test_group(test, name, reach, raster, column, row);
                 }
             }
         }
     });
+    update_farthest(raster);
+}
+
+bool raster_matters(const BoundsPacket& bounds, int lane, const FrontRaster& raster) {
+    const Reach reach(bounds, lane);
+    const Groups groups(reach, raster);
+    for (int row = groups.top; row <= groups.bottom; ++row) {
+        for (int column = groups.left; column <= groups.right; ++column) {
+            for (int i = 0; i < kLanes; i += kStep) {
+                const GroupCells cells(reach, raster, column, row, i);
+                if (!hn::AllFalse(kFloats, cells.reached)) return true;
+            }
+        }
+    }
+    return false;
+}
+
+float raster_farthest(const FrontRaster& raster) {
+    auto all = set(-kInfinity);
+    for (int k = 0; k < raster.across * raster.down * kLanes; k += kStep) {
+        all = hn::Max(all, hn::Load(kFloats, raster.farthest + k));
+    }
+    return hn::GetLane(hn::MaxOfLanes(kFloats, all));
 }
 
 // ---- Rays ----
@@ -682,6 +800,8 @@ HWY_EXPORT(find_union);
 HWY_EXPORT(identify_front);
 HWY_EXPORT(intersect_front);
 HWY_EXPORT(intersect_raster);
+HWY_EXPORT(raster_farthest);
+HWY_EXPORT(raster_matters);
 HWY_EXPORT(resolve_front);
 HWY_EXPORT(start_front);
 
@@ -700,6 +820,14 @@ void intersect(const Basis& basis, const ScreenPacket* packets, std::uint32_t in
 void intersect(const Basis& basis, const ScreenPacket* packets, std::uint32_t index,
                const FrontRaster& raster) {
     HWY_DYNAMIC_DISPATCH(intersect_raster)(basis, packets, index, raster);
+}
+
+float farthest_of(const FrontRaster& raster) {
+    return HWY_DYNAMIC_DISPATCH(raster_farthest)(raster);
+}
+
+bool matters(const BoundsPacket& bounds, int lane, const FrontRaster& raster) {
+    return HWY_DYNAMIC_DISPATCH(raster_matters)(bounds, lane, raster);
 }
 
 void identify(const Front& front, const ScreenPacket* packets, HitPacket& hits) {

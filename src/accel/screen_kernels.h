@@ -26,14 +26,15 @@ struct Front {
     void start(const Projection& projection, const PointPacket& points);
 };
 
-/// Fronts in the cells of a raster.
+/// Fronts in the cells of a raster. Four by four cells are a group, whose cells lie side by side:
+/// they are asked together whether a primitive matters to them.
 struct FrontRaster {
-    float left, top;  ///< of the first cell, q
-    float cells_per_pixel;
-    int across, down;
-    const std::uint32_t* front_at;  ///< a cell, row by row: its front
+    float left, top, side;          ///< of the first cell, q
+    int across, down;               ///< groups
+    const std::uint32_t* front_at;  ///< a cell, group by group: its front
     float* farthest;  ///< likewise its farthest depth; minus infinity where there is no front
     Front* fronts;
+    std::uint32_t* dirty;  ///< a group: which of its cells' farthest depths are out of date
 };
 
 /// Bit i is set for lane i of sixteen.
@@ -57,6 +58,11 @@ void intersect(const Basis& basis, const ScreenPacket* packets, std::uint32_t in
 /// The same for all fronts of a raster.
 void intersect(const Basis& basis, const ScreenPacket* packets, std::uint32_t index,
                const FrontRaster& raster);
+
+/// Largest of the cells' farthest depths.
+float farthest_of(const FrontRaster& raster);
+/// Whether bounds reach into a cell, before all that it sees.
+bool matters(const BoundsPacket& bounds, int lane, const FrontRaster& raster);
 
 /// The front as hits.
 void resolve(const Front& front, const RayPacket& rays, const ScreenPacket* packets,

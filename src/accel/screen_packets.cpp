@@ -500,6 +500,21 @@ void prepare(const Basis& basis, const Clusters& clusters, const Cluster& cluste
     }
 }
 
+void prefetch(const Clusters& clusters, std::uint32_t cluster) {
+    const auto ask = [](const auto& lanes) {
+        constexpr std::size_t kLine = 64;
+        const auto* bytes = reinterpret_cast<const char*>(&lanes);
+        for (std::size_t at = 0; at < sizeof(lanes); at += kLine) __builtin_prefetch(bytes + at);
+    };
+    const Cluster& own = clusters.clusters[cluster];
+    switch (own.kind) {
+        case ClusterKind::spheres: return ask(clusters.spheres[own.packet]);
+        case ClusterKind::triangles: return ask(clusters.triangles[own.packet]);
+        case ClusterKind::solids: return ask(clusters.solids[own.packet]);
+        case ClusterKind::glyphs: return ask(clusters.glyphs[own.packet]);
+    }
+}
+
 void prepare(const Basis& basis, const BoxLanes& boxes, std::size_t used, BoundsPacket& packet) {
     HWY_DYNAMIC_DISPATCH(prepare_boxes)(basis, boxes, packet);
     empty_unused(used, packet);

@@ -80,6 +80,9 @@ struct Basis {
 void prepare(const Basis& basis, const Clusters& clusters, const Cluster& cluster,
              ScreenPacket& packet);
 
+/// Asks the cache for what `prepare` will read of a cluster.
+void prefetch(const Clusters& clusters, std::uint32_t cluster);
+
 /// Screen bounds of the first `used` of sixteen boxes.
 void prepare(const Basis& basis, const BoxLanes& boxes, std::size_t used, BoundsPacket& packet);
 

@@ -184,7 +184,8 @@ class ScreenTileTracer final : public TileTracer {
     static constexpr std::uint32_t kNotYet = 0xFFFFFFFFU;
 
     void find_front(Front& front);
-    void find_fronts(const FrontRaster& raster, std::size_t cells);
+    FrontRaster lay_out(const BlockRaster& raster);
+    void find_fronts(const FrontRaster& raster);
     std::uint32_t packet_of(std::size_t candidate);
 
     const View& view_;
@@ -195,7 +196,9 @@ class ScreenTileTracer final : public TileTracer {
     std::vector<ScreenPacket> packets_;
     std::uint32_t used_ = 0;
     std::vector<Front> fronts_;
-    std::vector<float> farthest_;  ///< of the cells of a raster
+    std::vector<Lanes<float>> farthest_;          ///< of the cells of a raster, group by group
+    std::vector<Lanes<std::uint32_t>> front_at_;  ///< likewise
+    std::vector<std::uint32_t> dirty_;            ///< a group
 };
 
 void ScreenTileTracer::intersect(std::span<const PointPacket> points,
@@ -222,48 +225,47 @@ void ScreenTileTracer::intersect(const BlockRaster& raster, std::span<const Poin
                                  std::span<const RayPacket> rays, std::span<HitPacket> hits) {
     fronts_.resize(std::max(fronts_.size(), points.size()));
     for (std::size_t k = 0; k < points.size(); ++k) fronts_[k].start(view_.projection, points[k]);
-    farthest_.assign(raster.packet_at.size(), -kInfinity);
-    for (std::size_t cell = 0; cell < raster.packet_at.size(); ++cell) {
-        const std::uint32_t k = raster.packet_at[cell];
-        if (k != BlockRaster::kNone) farthest_[cell] = fronts_[k].window.farthest;
-    }
-    find_fronts({raster.left - view_.projection.centre.x, raster.top - view_.projection.centre.y,
-                 1.0F / raster.side, raster.across, raster.down, raster.packet_at.data(),
-                 farthest_.data(), fronts_.data()},
-                raster.packet_at.size());
+    find_fronts(lay_out(raster));
     for (std::size_t k = 0; k < points.size(); ++k) {
         resolve(fronts_[k], rays[k], packets_.data(), hits[k]);
     }
 }
 
+FrontRaster ScreenTileTracer::lay_out(const BlockRaster& raster) {
+    const int across = (raster.across + kBlockSide - 1) / kBlockSide;
+    const int down = (raster.down + kBlockSide - 1) / kBlockSide;
+    const auto groups = static_cast<std::size_t>(across * down);
+    farthest_.assign(groups, Lanes<float>::filled(-kInfinity));
+    front_at_.resize(groups);
+    dirty_.assign(groups, 0);
+    const std::uint32_t* packet = raster.packet_at.data();
+    for (int y = 0; y < raster.down; ++y) {
+        for (int x = 0; x < raster.across; ++x, ++packet) {
+            if (*packet == BlockRaster::kNone) continue;
+            const auto group = static_cast<std::size_t>(y / kBlockSide * across + x / kBlockSide);
+            const int lane = y % kBlockSide * kBlockSide + x % kBlockSide;
+            front_at_[group][lane] = *packet;
+            farthest_[group][lane] = fronts_[*packet].window.farthest;
+        }
+    }
+    const Vec2f centre = view_.projection.centre;
+    return {raster.left - centre.x,   raster.top - centre.y,    raster.side,    across,       down,
+            front_at_.data()->data(), farthest_.data()->data(), fronts_.data(), dirty_.data()};
+}
+
 /// Cluster by cluster instead of point by point: each is looked at once, not by every block that
 /// it reaches into.
-void ScreenTileTracer::find_fronts(const FrontRaster& raster, std::size_t cells) {
-    const std::span farthest(raster.farthest, cells);
-    const auto cell = [&](float at, float from, int count) {
-        const float place = (at - from) * raster.cells_per_pixel;
-        return static_cast<int>(std::clamp(place, 0.0F, static_cast<float>(count - 1)));
-    };
+void ScreenTileTracer::find_fronts(const FrontRaster& raster) {
     for (std::size_t k = 0;; ++k) {
-        const float most = *std::ranges::max_element(farthest);
+        const float most = farthest_of(raster);
         if (k == candidates_.packets() && !candidates_.find_more(most)) return;
-        const std::size_t end = std::min((k + 1) * kLanes, candidates_.count());
         if (!(candidates_.depth(k * kLanes) < most)) return;
+        const std::size_t end = std::min((k + 1) * kLanes, candidates_.count());
         for (std::size_t i = k * kLanes; i < end; ++i) {
-            const BoundsPacket& bounds = candidates_.bounds(k);
-            const int lane = static_cast<int>(i % kLanes);
-            const int left = cell(bounds.left[lane], raster.left, raster.across);
-            const int right = cell(bounds.right[lane], raster.left, raster.across);
-            const int top = cell(bounds.top[lane], raster.top, raster.down);
-            const int bottom = cell(bounds.bottom[lane], raster.top, raster.down);
-            const float depth = bounds.depth[lane];
-            bool hidden = true;
-            for (int row = top; row <= bottom && hidden; ++row) {
-                const float* cells_of_row = raster.farthest + row * raster.across;
-                hidden = std::none_of(cells_of_row + left, cells_of_row + right + 1,
-                                      [&](float behind) { return depth < behind; });
-            }
-            if (!hidden) ink::intersect(view_.basis, packets_.data(), packet_of(i), raster);
+            if (i + 1 < end) prefetch(view_.clusters, candidates_.cluster(i + 1));
+            if (!matters(candidates_.bounds(k), static_cast<int>(i % kLanes), raster)) continue;
+            const std::uint32_t packet = packet_of(i);
+            ink::intersect(view_.basis, packets_.data(), packet, raster);
         }
     }
 }

@@ -184,13 +184,22 @@ void FaceEdges::add_edges(const Mesh& mesh, TriangleRange triangles) {
     std::ranges::sort(directed_);
     for (std::uint32_t t = triangles.begin; t < triangles.end; ++t) {
         const Mesh::Triangle& corners = mesh.triangles[t];
+        std::array<Corner, 3> projected;
         for (std::size_t k = 0; k < 3; ++k) {
+            projected[k] = project(to_double(mesh.vertices[corners[k]]));
+        }
+        for (std::size_t k = 0; k < 3; ++k) {
+            const std::size_t next = (k + 1) % 3;
             const std::uint32_t from = corners[k];
-            const std::uint32_t to = corners[(k + 1) % 3];
+            const std::uint32_t to = corners[next];
             if (!mesh.edge_flags.empty() && mesh.is_boundary(t, k)) continue;
             if (std::ranges::binary_search(directed_, number(to, from))) continue;
             // The two faces of an edge must agree on where it is, to the last bit.
-            add_edge(mesh.vertices[std::min(from, to)], mesh.vertices[std::max(from, to)]);
+            if (from < to) {
+                add_edge(projected[k], projected[next]);
+            } else {
+                add_edge(projected[next], projected[k]);
+            }
         }
     }
 }
@@ -208,9 +217,7 @@ FaceEdges::Corner FaceEdges::project(const Vec3d& position) const {
             width};
 }
 
-void FaceEdges::add_edge(Vec3f from, Vec3f to) {
-    Corner a = project(to_double(from));
-    Corner b = project(to_double(to));
+void FaceEdges::add_edge(Corner a, Corner b) {
     const double least = kNearest * std::max(a.width, b.width);
     if (least <= 0.0) return;  // behind the eye
     if (a.width < least || b.width < least) {

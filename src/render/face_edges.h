@@ -62,7 +62,7 @@ class FaceEdges {
     std::span<const ScreenEdge> near_edges(std::span<const ScreenEdge> edges, int x, int y,
                                            float reach);
     void add_edges(const Mesh& mesh, TriangleRange triangles);
-    void add_edge(Vec3f from, Vec3f to);
+    void add_edge(Corner a, Corner b);
     Corner project(const Vec3d& position) const;
     std::size_t place_of(std::uint32_t key) const;
     void grow();
