@@ -22,10 +22,12 @@ figure: build
 	    echo "wrote out/acetaminophen-$$compose.png"; \
 	done
 
-# All figures of the paper, as out/gallery/index.html.
+# All figures of the paper, as out/gallery/index.html. Figure 7 shows the Stanford bunny where npm
+# can fetch it, else a mesh that Inktrace makes; MESH= names any other. TABLES=1 measures the tables.
+MESH ?= $(shell sh cmake/fetch-bunny.sh build/bunny.obj && echo build/bunny.obj)
 gallery: build
 	@mkdir -p out
-	$(BIN) gallery -o out/gallery
+	$(BIN) gallery -o out/gallery $(if $(MESH),--mesh $(MESH)) $(if $(TABLES),--tables)
 
 test: build
 	ctest --preset $(PRESET)

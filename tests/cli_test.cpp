@@ -414,6 +414,27 @@ TEST_F(CommandLine, DrawsLinesAsCurves) {
     EXPECT_TRUE(read_bytes(file("a.pdf")).starts_with("%PDF-"));
 }
 
+TEST_F(CommandLine, MakesAPageOfThePapersFiguresAndTables) {
+    const Outcome outcome = run({"gallery", "-o", "g", "--figures", "4"});
+    ASSERT_EQ(outcome.status, 0) << outcome.err;
+    const std::string page = read_bytes(file("g/index.html"));
+    expect_says(page, {"<h2 id=\"Figure 4\">", "Table 1", "Table 2", "24.3", "</html>"});
+    int pictures = 0;
+    constexpr std::string_view kSource = "src=\"";
+    for (auto at = page.find(kSource); at != std::string::npos; at = page.find(kSource, at + 1)) {
+        const auto from = at + kSource.size();
+        const std::string name = page.substr(from, page.find('"', from) - from);
+        EXPECT_TRUE(fs::exists(file("g/" + name))) << name;
+        ++pictures;
+    }
+    EXPECT_EQ(pictures, 3);
+    // The caption's count of rays comes from the points themselves.
+    expect_says(read_bytes(file("g/figure4-b.svg")), {"= 24,", "= 9</text>"});
+
+    EXPECT_EQ(run({"gallery", "-o", "g", "--figures", "11"}).status, 2);
+    EXPECT_EQ(run({"gallery", "-o", "g", "--figures", "7", "--mesh", "missing.obj"}).status, 1);
+}
+
 TEST_F(CommandLine, WritesAovsBesideCurvesAsPictures) {
     EXPECT_EQ(run({"render", kSample, "-o", "a.svg", "--size", "40x30", "--aov", "depth"}).status,
               0);

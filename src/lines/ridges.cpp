@@ -104,8 +104,8 @@ RidgeEstimate RidgeEstimator::estimate(std::span<const Vec3f> normals) const {
     const float q1 = std::sqrt(largest);
     RidgeEstimate result;
     // Where the two singular values are alike, there is no direction t1: ridges fade out there.
-    constexpr float kLeastDifference = 0.15F;
-    constexpr float kFullDifference = 0.45F;
+    constexpr float kLeastDifference = 0.3F;
+    constexpr float kFullDifference = 0.6F;
     const float difference = 2.0F * root / largest;
     if (!(q1 > settings_.least) || !(difference > kLeastDifference)) return result;
     const Vec2f t = half >= 0.0F ? Vec2f{half + root, b} : Vec2f{b, root - half};
