@@ -1,0 +1,196 @@
+// Whole pictures of scenes with known answers, by method edges.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "drawing.h"
+#include "edges_view.h"
+#include "scenes.h"
+
+namespace ink::test {
+namespace {
+
+std::map<LineType, double> lengths(const Scene& scene, const Settings& settings) {
+    Drawing drawing;
+    render(scene, *make_tracer(scene), settings, {}, {}, nullptr, &drawing);
+    std::map<LineType, double> lengths;
+    const auto inside = [&](Vec2f p) {
+        return p.x > 0.0F && p.y > 0.0F && p.x < static_cast<float>(settings.size.width) &&
+               p.y < static_cast<float>(settings.size.height);
+    };
+    for (const Segment& s : drawing.segments) {
+        if (inside(s.a) && inside(s.b)) {
+            lengths[s.type] += std::hypot(s.b.x - s.a.x, s.b.y - s.a.y);
+        }
+    }
+    return lengths;
+}
+
+class PictureOf : public testing::TestWithParam<Size> {};
+
+INSTANTIATE_TEST_SUITE_P(AnyShape, PictureOf, testing::Values(Size{120, 60}, Size{60, 120}),
+                         [](const auto& size) {
+                             return size.param.width > size.param.height ? "Wide" : "Tall";
+                         });
+
+TEST_P(PictureOf, AStraightEdgeHasTheWidthThatWasAskedForAtAnyAngle) {
+    const Size size = GetParam();
+    for (const double width : {0.5, 2.0, 8.0, 20.0}) {
+        for (int angle_deg = 0; angle_deg <= 90; angle_deg += 3) {
+            double ink = 0.0;
+            constexpr int kPhases = 4;
+            for (int phase = 0; phase < kPhases; ++phase) {
+                Settings settings = plan_view(size, width);
+                const double shift = 0.137 + 0.25 * phase;
+                settings.view.eye = Vec3d{shift, 3 * shift, 100};
+                settings.view.look_at = Vec3d{shift, 3 * shift, 0};
+                settings.lattice = 1 + (angle_deg / 3 + phase) % 4;
+                const Film film = draw(Scene({half_plane(angle_deg, 200)}), settings);
+                // Across the line, over the inner 24 pixels along it.
+                const bool level = angle_deg <= 45;
+                const auto& line = plane(film, "line.A");
+                for (int y = 0; y < size.height; ++y) {
+                    for (int x = 0; x < size.width; ++x) {
+                        const int along = level ? x - size.width / 2 : y - size.height / 2;
+                        if (along >= -12 && along < 12)
+                            ink += static_cast<double>(line[at(size, x, y)]);
+                    }
+                }
+            }
+            const double angle = angle_deg * kDegrees;
+            const double measured = ink / (24.0 * kPhases) *
+                                    std::max(std::abs(std::cos(angle)), std::abs(std::sin(angle)));
+            EXPECT_NEAR(measured, width, 0.02 * width) << angle_deg << " degrees";
+        }
+    }
+}
+
+TEST(BoxOnAPlane, HasSilhouettesAboveCreasesWithinAndAnIntersectionBelow) {
+    // Seen at 45 degrees round and 30 degrees from above, one scene unit a pixel.
+    const auto box = [](Vec3f low, Vec3f high) {
+        std::vector<Vec3f> v;
+        for (int k = 0; k < 8; ++k) {
+            v.push_back({(k & 1) != 0 ? high.x : low.x, (k & 2) != 0 ? high.y : low.y,
+                         (k & 4) != 0 ? high.z : low.z});
+        }
+        Object object = mesh_object(v, {{0, 2, 1},
+                                        {1, 2, 3},
+                                        {4, 5, 6},
+                                        {5, 7, 6},
+                                        {0, 1, 4},
+                                        {1, 5, 4},
+                                        {2, 6, 3},
+                                        {3, 6, 7},
+                                        {0, 4, 2},
+                                        {2, 4, 6},
+                                        {1, 3, 5},
+                                        {3, 7, 5}});
+        smooth_normals(std::get<Mesh>(object.shape));
+        return object;
+    };
+    const double a = 60;
+    Object floor = mesh_object({{-500, 0, -500}, {500, 0, -500}, {500, 0, 500}, {-500, 0, 500}},
+                               {{0, 1, 2}, {0, 2, 3}});
+    const Scene scene({floor, box({-30, 0, -30}, {30, 60, 30})});
+    Settings settings = plan_view({160, 160}, 2.0);
+    const double up = std::tan(30 * kDegrees) * std::sqrt(2.0);
+    settings.view.eye = Vec3d{300, 300 * up + 30, 300};
+    settings.view.look_at = Vec3d{0, 30, 0};
+    auto found = lengths(scene, settings);
+    const double upright = a * std::cos(30 * kDegrees);
+    const double slanting =
+        a * std::hypot(std::sqrt(0.5), std::sqrt(0.5) * std::sin(30 * kDegrees));
+    EXPECT_NEAR(found[LineType::silhouette], 2 * upright + 2 * slanting, 3.0);
+    EXPECT_NEAR(found[LineType::crease], upright + 2 * slanting, 3.0);
+    EXPECT_NEAR(found[LineType::intersection], 2 * slanting, 3.0);
+    EXPECT_LT(found[LineType::self_occlusion] + found[LineType::boundary], 1.0);
+}
+
+TEST(BentSheet, HasBoundariesAtItsRimAndASelfOcclusionAtItsCrest) {
+    // A sheet bent over like a page: half a cylinder, of which the crest hides the far side.
+    std::vector<Vec3f> vertices;
+    std::vector<Mesh::Triangle> triangles;
+    constexpr std::uint32_t kSteps = 90;
+    for (std::uint32_t k = 0; k <= kSteps; ++k) {
+        const auto angle = static_cast<float>(k * std::numbers::pi / kSteps);
+        for (const float x : {-40.0F, 40.0F}) {
+            vertices.push_back({x, 30 * std::sin(angle), 30 * std::cos(angle)});
+        }
+        if (k == 0) continue;
+        const std::uint32_t b = 2 * k;
+        triangles.push_back({b - 2, b - 1, b + 1});
+        triangles.push_back({b - 2, b + 1, b});
+    }
+    // Beyond its foot the sheet goes on level, to the back.
+    for (const float x : {-40.0F, 40.0F}) vertices.push_back({x, 0, -130});
+    const auto last = static_cast<std::uint32_t>(vertices.size() - 1);
+    triangles.push_back({last - 3, last - 2, last});
+    triangles.push_back({last - 3, last, last - 1});
+    Object sheet = mesh_object(vertices, triangles);
+    smooth_normals(std::get<Mesh>(sheet.shape));
+    Settings settings = plan_view({128, 128}, 2.0);
+    const double down = 35 * kDegrees;
+    settings.view.eye = Vec3d{0, 300 * std::sin(down), 300 * std::cos(down)};
+    auto found = lengths(Scene({sheet}), settings);
+    // The crest is as wide as the sheet; so are the boundaries in front and behind.
+    EXPECT_NEAR(found[LineType::self_occlusion], 80.0, 4.0);
+    EXPECT_GT(found[LineType::boundary], 2 * 80.0);
+    EXPECT_LT(found[LineType::crease] + found[LineType::intersection], 6.0);
+}
+
+/// A ball of 2 n x n facets.
+Object globe(std::uint32_t n) {
+    std::vector<Vec3f> vertices;
+    std::vector<Mesh::Triangle> triangles;
+    for (std::uint32_t j = 0; j <= n; ++j) {
+        for (std::uint32_t i = 0; i < 2 * n; ++i) {
+            const double u = std::numbers::pi * i / n;
+            const double v = std::numbers::pi * j / n;
+            vertices.push_back(
+                to_float(Vec3d{std::sin(v) * std::cos(u), std::cos(v), std::sin(v) * std::sin(u)}));
+            if (j == n) continue;
+            const std::uint32_t a = j * 2 * n + i;
+            const std::uint32_t b = j * 2 * n + (i + 1) % (2 * n);
+            triangles.push_back({a, b, b + 2 * n});
+            triangles.push_back({a, b + 2 * n, a + 2 * n});
+        }
+    }
+    Object object = mesh_object(vertices, triangles);
+    auto& mesh = std::get<Mesh>(object.shape);
+    weld(mesh);
+    smooth_normals(mesh);
+    return object;
+}
+
+// Facets of 9 degrees are just below the least turn of a crease; so are finer ones at any zoom.
+TEST(TessellatedSphere, HasNoCreaseAtAnyZoom) {
+    for (const std::uint32_t n : {20U, 48U, 120U}) {
+        const Scene scene({globe(n)});
+        for (const char* normals : {"auto", "geometric"}) {
+            for (const double height : {2.4, 0.6, 0.1, 0.01}) {
+                for (const double aside : {0.0, 0.4, 0.85}) {
+                    Settings settings = plan_view({96, 96}, 2.0);
+                    settings.view.eye = Vec3d{aside, 0.3 * aside, 10};
+                    settings.view.look_at = Vec3d{aside, 0.3 * aside, 0};
+                    settings.view.orthographic = height;
+                    set(settings, "normals", normals);
+                    auto found = lengths(scene, settings);
+                    EXPECT_EQ(found[LineType::crease], 0.0)
+                        << n << ", " << normals << ", " << height;
+                    EXPECT_EQ(found[LineType::self_occlusion], 0.0)
+                        << n << ", " << normals << ", " << height << ", " << aside;
+                }
+            }
+        }
+    }
+}
+
+}  // namespace
+}  // namespace ink::test
