@@ -47,8 +47,11 @@ class RidgeEstimator {
     /// Unit normals at the offsets, in the same order. Strength 0 where there is no ridge.
     RidgeEstimate estimate(std::span<const Vec3f> normals) const;
 
-  private:
     static constexpr std::size_t kDerivatives = 9;  ///< x, y, xx, xy, yy, xxx, xxy, xyy, yyy
+    /// With which each normal goes into each derivative.
+    std::span<const std::array<float, kDerivatives>> weights() const { return weights_; }
+
+  private:
     RidgeSettings settings_;
     std::vector<std::array<float, kDerivatives>> weights_;  ///< of each normal
 };
