@@ -17,6 +17,7 @@
 #include "readers.h"
 #include "render/render.h"
 #include "scenes.h"
+#include "session.h"
 
 namespace {
 
@@ -140,6 +141,26 @@ nlohmann::ordered_json to_json(const Result& result) {
     return json;
 }
 
+int run_sessions(const std::vector<std::string>& files, int side, int rounds,
+                 const std::vector<std::string>& flags) {
+    std::vector<std::pair<std::string, std::string>> settings;
+    for (const std::string& flag : flags) {
+        const std::size_t equals = std::min(flag.find('='), flag.size());
+        settings.emplace_back(flag.substr(0, equals),
+                              flag.substr(std::min(equals + 1, flag.size())));
+    }
+    try {
+        print_heading_of_sessions();
+        for (const std::string& file : files) {
+            print(measure_session(file, side, rounds, settings));
+        }
+    } catch (const std::exception& error) {
+        fmt::print(stderr, "{}\n", error.what());
+        return 1;
+    }
+    return 0;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -160,6 +181,10 @@ int main(int argc, char** argv) {
     app.add_option("--readers", readers_mb,
                    "Measure reading files of this many megabytes instead, one of each format")
         ->check(CLI::Range(1.0, 4000.0));
+    bool sessions = false;
+    std::vector<std::string> flags;
+    app.add_flag("--session", sessions, "Measure the viewer with the files instead");
+    app.add_option("--set", flags, "With --session: a setting, NAME=VALUE");
     CLI11_PARSE(app, argc, argv);
     if (readers_mb > 0.0) {
         for (const ReaderRow& row : measure_readers(readers_mb)) {
@@ -169,6 +194,7 @@ int main(int argc, char** argv) {
         }
         return 0;
     }
+    if (sessions) return run_sessions(files, side, rounds, flags);
 
     std::vector<NamedScene> scenes;
     try {

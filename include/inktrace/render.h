@@ -71,6 +71,10 @@ struct RenderOptions {
     bool linear = false;  ///< make linear float pixels, as an EXR holds them
     bool curves = false;  ///< keep the lines as curves, which takes method edges
     bool inked = true;    ///< draw the lines on the pixels; SVG and PDF draw their own on top
+    /// Below 1: a draft for a camera that moves, from so many rays along a pixel's side. Shading
+    /// gets softer and what is thinner than 1 / draft pixels may be missed; lines keep their types,
+    /// widths and places. Makes display pixels only, and no AOVs.
+    double draft = 1.0;
     /// Called with the share that is done, in (0, 1], and the size of the whole in megapixels, from
     /// the rendering threads, one at a time.
     std::function<void(double share, double megapixels)> progress;

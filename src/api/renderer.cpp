@@ -9,6 +9,7 @@
 #include "camera/views.h"
 #include "inktrace/inktrace.h"
 #include "io/atomic_file.h"
+#include "render/draft.h"
 #include "render/pick.h"
 #include "render/pipeline.h"
 #include "render/render.h"
@@ -46,6 +47,9 @@ Renderer::~Renderer() = default;
 double Renderer::build_ms() const { return impl_->build_ms; }
 
 void validate(const Settings& settings, const RenderOptions& options) {
+    if (!(options.draft > 0.0)) {
+        throw Error(Error::Kind::usage, "a draft takes more than 0 rays along a pixel's side");
+    }
     const int color_bytes = (options.display ? 4 : 0) + (options.linear ? 16 : 0);
     ink::guard([&] {
         const ink::Settings& inner = settings.impl().settings;
@@ -131,22 +135,28 @@ Picture Renderer::render(const Settings& settings, const RenderOptions& options)
             progress = [&, megapixels](double share) { options.progress(share, megapixels); };
         }
         ink::Drawing drawing;
-        Picture::Impl picture{
-            .film = ink::render(
+        const ink::RenderControl control{.progress = progress, .cancel = options.cancel};
+        const auto draw = [&] {
+            if (options.draft < 1.0) {
+                return ink::render_draft(impl_->scene, *impl_->tracer, inner, options.draft,
+                                         control, &stats);
+            }
+            return ink::render(
                 impl_->scene, *impl_->tracer, inner,
                 {.display = options.display, .linear = options.linear, .lines = options.inked},
-                {.progress = progress, .cancel = options.cancel}, &stats,
-                options.curves ? &drawing : nullptr),
-            .dpi = inner.dpi,
-            .aovs = inner.aovs,
-            .metadata = metadata(settings),
-            .stats = {.render_ms = stats.render_ms,
-                      .trace_ms = stats.trace_ms,
-                      .lines_ms = stats.lines_ms,
-                      .shade_ms = stats.shade_ms,
-                      .rays = stats.rays,
-                      .crossings = stats.crossings,
-                      .threads = stats.threads}};
+                control, &stats, options.curves ? &drawing : nullptr);
+        };
+        Picture::Impl picture{.film = draw(),
+                              .dpi = inner.dpi,
+                              .aovs = inner.aovs,
+                              .metadata = metadata(settings),
+                              .stats = {.render_ms = stats.render_ms,
+                                        .trace_ms = stats.trace_ms,
+                                        .lines_ms = stats.lines_ms,
+                                        .shade_ms = stats.shade_ms,
+                                        .rays = stats.rays,
+                                        .crossings = stats.crossings,
+                                        .threads = stats.threads}};
         if (options.curves) {
             const ink::Timer timer(picture.stats.curves_ms);
             picture.line_art =

@@ -235,6 +235,12 @@ void Film::store(int x, int y, const Block& block) {
     if (settings_.display) copy_block(size_, x, y, block.display, display_.pixels.data());
 }
 
+void Film::put_display(int x, int y, std::span<const std::uint32_t> pixels) {
+    const std::size_t first = static_cast<std::size_t>(y) * static_cast<std::size_t>(size_.width) +
+                              static_cast<std::size_t>(x);
+    std::ranges::copy(pixels, display_.pixels.begin() + static_cast<std::ptrdiff_t>(first));
+}
+
 void Film::touch_up(int x, int y, int count, const TouchUp& change) {
     count = std::min(count, size_.width - x);
     // Pixels that stay as they are must not go through the blend space and back, which rounds.

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -63,6 +64,9 @@ class Film {
     void put(int x, int y, const ColorPacket& shaded);
     /// The same where there is nothing but background.
     void put_background(int x, int y) { store(x, y, background_); }
+
+    /// Writes finished pixels of a row of the display image, which must have been asked for.
+    void put_display(int x, int y, std::span<const std::uint32_t> pixels);
 
     /// Changes up to kLanes finished pixels from (x, y) on to the right: adds `shift` to their
     /// colour (linear, premultiplied), then lays ink over them. Pixels beyond the film's edge are

@@ -73,6 +73,7 @@ void LineDensity::finish() {
 
 /// Between the middles of four squares, in proportion; squares cut by the border weigh less.
 float LineDensity::at(Vec2f point) const {
+    point = point * shrink_ + shift_;
     const float x = point.x / static_cast<float>(side_) - 0.5F;
     const float y = point.y / static_cast<float>(side_) - 0.5F;
     const int i = std::clamp(static_cast<int>(std::floor(x)), i0_, i0_ + across_ - 2);
@@ -88,6 +89,11 @@ float LineDensity::at(Vec2f point) const {
     };
     const float searched = mix(&Square::searched);
     return searched > 0.0F ? mix(&Square::inked) / searched : 0.0F;
+}
+
+void LineDensity::enlarge(float factor, Vec2f middle_before, Vec2f middle_after) {
+    shrink_ = 1.0F / factor;
+    shift_ = middle_before - middle_after * shrink_;
 }
 
 float width_scale(float share, float most) {

@@ -30,6 +30,8 @@ class LineDensity {
 
     /// Covered share about a place, without end: 2 if lines lie side by side twice.
     float at(Vec2f point) const;
+    /// From now on, places are those of a picture `factor` times as large.
+    void enlarge(float factor, Vec2f middle_before, Vec2f middle_after);
 
   private:
     /// What a square adds to the shares of places near it.
@@ -47,6 +49,8 @@ class LineDensity {
     int across_ = 0, down_ = 0;        ///< squares
     std::vector<std::int64_t> inked_;  ///< length times width, in 2^-20 square pixels
     std::vector<Square> squares_;
+    float shrink_ = 1.0F;  ///< from the places of `at`
+    Vec2f shift_;          ///< likewise, after shrinking
 };
 
 /// By how much to scale the width of lines that would cover `share` of their surroundings so that

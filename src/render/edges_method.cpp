@@ -5,12 +5,11 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
-#include <optional>
+#include <variant>
 
 #include "accel/peeled_tracer.h"
 #include "base/error.h"
 #include "base/parallel.h"
-#include "render/face_map.h"
 #include "render/hidden_lines.h"
 #include "render/line_drawer.h"
 #include "render/line_finder.h"
@@ -78,6 +77,9 @@ Edges::Edges(const Pipeline& shared)
       surfaces(shared.scene, shared.settings.shading.normals),
       draw_lines(shared.lines.ink),
       find_lines(draw_lines || shared.lines.drawing != nullptr),
+      has_meshes(std::ranges::any_of(
+          shared.scene.objects(),
+          [](const Object& object) { return std::holds_alternative<Mesh>(object.shape); })),
       smooth_shading(shared.settings.smoothing().kind == AntiAliasing::Kind::edges),
       wanted(shared.settings.lines),
       styles_by_object(has_object_rules(shared.settings)),
@@ -87,7 +89,7 @@ Edges::Edges(const Pipeline& shared)
     detect.depths = smooth_shading || wanted.has(LineType::self_occlusion) ||
                     wanted.has(LineType::boundary) || wanted.has(LineType::crease);
     detect.normals = smooth_shading || wanted.has(LineType::crease);
-    if (find_lines && shared.settings.draws_hidden()) {
+    if (find_lines && shared.frame != nullptr && shared.settings.draws_hidden()) {
         // What a line of any type uncovers changes the layers behind it.
         detect.depths = true;
         for (int layer = 1; layer <= shared.settings.hidden_layers; ++layer) {
@@ -172,20 +174,6 @@ void keep_lines(const Edges& edges, const std::vector<std::vector<ColoredSegment
     }
 }
 
-/// Joins the hidden lines of the whole picture, so that dashes do not start anew in every tile, and
-/// puts their strokes where the tiles that draw look for lines.
-void add_strokes(const Edges& edges, const std::vector<std::vector<Segment>>& hidden,
-                 std::vector<std::vector<ColoredSegment>>& found) {
-    std::vector<Segment> lines;
-    for (const std::vector<Segment>& tile : hidden) {
-        lines.insert(lines.end(), tile.begin(), tile.end());
-    }
-    for (const Segment& stroke : hidden_strokes(edges, lines)) {
-        const Vec2f middle = (stroke.a + stroke.b) * 0.5F;
-        found[edges.search_tile_at(middle)].push_back({stroke, {}, {}});
-    }
-}
-
 /// From what all workers have counted.
 LineThinning thinning_of(const Edges& edges,
                          const std::vector<std::unique_ptr<LineFinder>>& finders) {
@@ -213,51 +201,74 @@ RenderStats total_of(const std::vector<std::unique_ptr<Worker>>& workers) {
 
 }  // namespace
 
+FoundLines find_lines(const Edges& edges, WorkLoop& loop, RenderStats& stats) {
+    const Pipeline& pipeline = edges.pipeline;
+    const auto pool = static_cast<std::size_t>(loop.threads());
+    FoundLines found;
+    found.tiles.resize(edges.search_tiles.size());
+    found.hidden.resize(edges.search_tiles.size());
+    if (edges.wants_faces()) found.faces.emplace(pipeline.scene, pipeline.settings.size, edges.q);
+    std::vector<std::unique_ptr<LineFinder>> finders(pool);
+    std::vector<std::unique_ptr<HiddenLineFinder>> behind(pool);
+    loop.run(edges.search_tiles.size(), [&](std::size_t i, std::size_t worker) {
+        if (!finders[worker]) {
+            finders[worker] =
+                std::make_unique<LineFinder>(edges, found.faces ? &*found.faces : nullptr);
+        }
+        found.tiles[i] = finders[worker]->search(edges.search_tiles[i]);
+        if (edges.behind.empty()) return;
+        if (!behind[worker]) behind[worker] = std::make_unique<HiddenLineFinder>(edges);
+        found.hidden[i] = behind[worker]->search(edges.search_tiles[i], *finders[worker]);
+    });
+
+    if (edges.find_lines && edges.wanted.has(LineType::self_occlusion)) {
+        stats += mend_lines(edges, found.tiles);
+    }
+    found.thinning = thinning_of(edges, finders);
+    stats += total_of(finders);
+    stats += total_of(behind);
+    return found;
+}
+
+void add_hidden_strokes(const Edges& edges, FoundLines& found) {
+    if (!edges.draw_lines || edges.behind.empty()) return;
+    std::vector<Segment> lines;
+    for (const std::vector<Segment>& tile : found.hidden) {
+        lines.insert(lines.end(), tile.begin(), tile.end());
+    }
+    for (const Segment& stroke : hidden_strokes(edges, lines)) {
+        // Where the tiles that draw look for lines.
+        const Vec2f middle = (stroke.a + stroke.b) * 0.5F;
+        found.tiles[edges.search_tile_at(middle)].push_back({stroke, {}, {}});
+    }
+}
+
+void draw_lines(const Edges& edges, const FoundLines& found, WorkLoop& loop, RenderStats& stats) {
+    std::vector<std::unique_ptr<LineDrawer>> drawers(static_cast<std::size_t>(loop.threads()));
+    loop.run(edges.draw_tiles.size(), [&](std::size_t i, std::size_t worker) {
+        if (!drawers[worker]) {
+            drawers[worker] = std::make_unique<LineDrawer>(edges, found.thinning,
+                                                           found.faces ? &*found.faces : nullptr);
+        }
+        drawers[worker]->draw(edges.draw_tiles[i], found.tiles);
+    });
+    stats += total_of(drawers);
+}
+
 RenderStats render_edges(const Pipeline& pipeline, const RenderControl& control) {
     const Edges edges(pipeline);
     const int threads =
         pipeline.settings.threads > 0 ? pipeline.settings.threads : hardware_threads();
     WorkLoop loop(threads, control, edges.search_tiles.size() + edges.draw_tiles.size());
-    const auto pool = static_cast<std::size_t>(threads);
-
-    std::optional<FaceMap> faces;
-    if (edges.wants_faces()) faces.emplace(pipeline.scene, pipeline.settings.size, edges.q);
-    FaceMap* const face_map = faces ? &*faces : nullptr;
-    std::vector<std::vector<ColoredSegment>> found(edges.search_tiles.size());
-    std::vector<std::vector<Segment>> hidden(edges.search_tiles.size());
-    std::vector<std::unique_ptr<LineFinder>> finders(pool);
-    std::vector<std::unique_ptr<HiddenLineFinder>> behind(pool);
-    loop.run(edges.search_tiles.size(), [&](std::size_t i, std::size_t worker) {
-        if (!finders[worker]) finders[worker] = std::make_unique<LineFinder>(edges, face_map);
-        found[i] = finders[worker]->search(edges.search_tiles[i]);
-        if (edges.behind.empty()) return;
-        if (!behind[worker]) behind[worker] = std::make_unique<HiddenLineFinder>(edges);
-        hidden[i] = behind[worker]->search(edges.search_tiles[i], *finders[worker]);
-    });
-
-    RenderStats mending;
-    if (edges.find_lines && edges.wanted.has(LineType::self_occlusion)) {
-        mending = mend_lines(edges, found);
-    }
-    const LineThinning thinning = thinning_of(edges, finders);
+    RenderStats stats;
+    FoundLines found = find_lines(edges, loop, stats);
     if (pipeline.lines.drawing != nullptr) {
-        keep_lines(edges, found, hidden, *pipeline.lines.drawing);
-        pipeline.lines.drawing->thinning = thinning;
+        keep_lines(edges, found.tiles, found.hidden, *pipeline.lines.drawing);
+        pipeline.lines.drawing->thinning = found.thinning;
     }
-    if (edges.draw_lines && !edges.behind.empty()) add_strokes(edges, hidden, found);
-
-    std::vector<std::unique_ptr<LineDrawer>> drawers(pool);
-    loop.run(edges.draw_tiles.size(), [&](std::size_t i, std::size_t worker) {
-        if (!drawers[worker])
-            drawers[worker] = std::make_unique<LineDrawer>(edges, thinning, face_map);
-        drawers[worker]->draw(edges.draw_tiles[i], found);
-    });
-
-    RenderStats total = total_of(finders);
-    total += total_of(behind);
-    total += total_of(drawers);
-    total += mending;
-    return total.mean_over(threads);
+    add_hidden_strokes(edges, found);
+    draw_lines(edges, found, loop, stats);
+    return stats.mean_over(threads);
 }
 
 }  // namespace ink

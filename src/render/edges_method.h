@@ -2,6 +2,7 @@
 
 #include <array>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "lines/density.h"
@@ -10,6 +11,7 @@
 #include "lines/line_type.h"
 #include "lines/locate.h"
 #include "lines/segment.h"
+#include "render/face_map.h"
 #include "render/pipeline.h"
 #include "render/tiles.h"
 #include "sampling/samples.h"
@@ -32,13 +34,14 @@ struct Edges {
     /// Index of the tile that a point was searched in.
     std::size_t search_tile_at(Vec2f point) const;
     std::size_t style_of(LineType type, std::uint32_t object) const;
-    bool wants_faces() const { return find_lines && wanted.has(LineType::mesh); }
+    bool wants_faces() const { return find_lines && has_meshes && wanted.has(LineType::mesh); }
 
     const Pipeline& pipeline;
     int q;  ///< lattice points along a pixel's side
     Surfaces surfaces;
-    bool draw_lines;      ///< on the film
-    bool find_lines;      ///< for the film, or as data
+    bool draw_lines;  ///< on the film
+    bool find_lines;  ///< for the film, or as data
+    bool has_meshes;
     bool smooth_shading;  ///< blend the colours of pixels that a line cuts
     DetectSettings detect;
     LocateSettings locate;
@@ -56,5 +59,21 @@ struct Edges {
     /// The surfaces behind the nearest ones, layer by layer; empty unless hidden lines are wanted.
     std::vector<std::unique_ptr<FrameTracer>> behind;
 };
+
+/// What the pass that finds lines leaves to the pass that draws them.
+struct FoundLines {
+    std::vector<std::vector<ColoredSegment>> tiles;  ///< of each of the tiles that were searched
+    std::vector<std::vector<Segment>> hidden;        ///< likewise, on surfaces behind
+    LineThinning thinning;                           ///< where they are dense
+    std::optional<FaceMap> faces;                    ///< for lines between faces
+};
+
+/// Shades the film and finds its lines.
+FoundLines find_lines(const Edges& edges, WorkLoop& loop, RenderStats& stats);
+/// Joins the hidden lines of the whole picture, so that dashes do not start anew in every tile, and
+/// puts their strokes among the others.
+void add_hidden_strokes(const Edges& edges, FoundLines& found);
+/// Draws what `find_lines` found on the film.
+void draw_lines(const Edges& edges, const FoundLines& found, WorkLoop& loop, RenderStats& stats);
 
 }  // namespace ink

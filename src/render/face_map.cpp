@@ -5,6 +5,8 @@
 #include <cstring>
 #include <variant>
 
+#include "base/parallel.h"
+
 namespace ink {
 
 namespace {
@@ -38,6 +40,31 @@ FaceMap::FaceMap(const Scene& scene, Size size, int lattice)
             triangles += static_cast<std::uint32_t>(meshes_.back()->triangles.size());
         }
     }
+}
+
+FaceMap::FaceMap(const FaceMap& small, Size size, const std::vector<int>& column_of,
+                 const std::vector<int>& row_of)
+    : meshes_(small.meshes_),
+      first_(small.first_),
+      size_(size),
+      lattice_(1),
+      blocks_across_((size.width + kBlockSide - 1) / kBlockSide),
+      blocks_down_((size.height + kBlockSide - 1) / kBlockSide),
+      triangles_(size.pixels()),
+      cells_(size.pixels()),
+      blocks_(static_cast<std::size_t>(blocks_across_) * static_cast<std::size_t>(blocks_down_)) {
+    constexpr std::size_t kRows = 32;
+    parallel_ranges(
+        static_cast<std::size_t>(size.height), kRows, [&](std::size_t begin, std::size_t end) {
+            for (auto y = static_cast<int>(begin); y < static_cast<int>(end); ++y) {
+                std::uint32_t* const row = triangles_.data() + pixel(0, y);
+                const std::uint32_t* const from =
+                    small.triangles_.data() + small.pixel(0, row_of[static_cast<std::size_t>(y)]);
+                for (std::size_t x = 0; x < column_of.size(); ++x) {
+                    row[x] = from[column_of[x]];
+                }
+            }
+        });
 }
 
 FaceMap::Triangle FaceMap::triangle(std::uint32_t number) const {

@@ -27,13 +27,14 @@ struct LineOutput {
 
 /// What every method works with.
 struct Pipeline {
+    /// `traces`: whether rays are wanted, or only what is found already is to be drawn.
     Pipeline(const Scene& all_objects, const Tracer& scene_tracer, const Settings& all,
-             Film& target, const LineOutput& line_output)
+             Film& target, const LineOutput& line_output, bool traces = true)
         : scene(all_objects),
           tracer(scene_tracer),
           settings(all),
           camera(scene, all.view, all.size),
-          frame(scene_tracer.frame(camera.projection(), all.threads)),
+          frame(traces ? scene_tracer.frame(camera.projection(), all.threads) : nullptr),
           shader(scene, scene_tracer, camera, all.shading),
           ids(scene, all.ids),
           optics(scene),
@@ -57,7 +58,7 @@ struct Pipeline {
     const Tracer& tracer;
     const Settings& settings;
     Camera camera;
-    std::unique_ptr<FrameTracer> frame;
+    std::unique_ptr<FrameTracer> frame;  ///< null if there are no rays
     Shader shader;
     LineIds ids;
     Optics optics;
@@ -66,6 +67,9 @@ struct Pipeline {
     LineOutput lines;
     std::optional<AovWriter> aovs;
 };
+
+/// What the settings say about the film.
+FilmSettings film_settings(const Settings& settings, const PixelFormats& formats);
 
 /// Runs a picture's work items in parallel, watches for cancellation and reports progress.
 class WorkLoop {

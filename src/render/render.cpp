@@ -6,8 +6,6 @@
 
 namespace ink {
 
-namespace {
-
 FilmSettings film_settings(const Settings& settings, const PixelFormats& formats) {
     const bool linear = settings.line_blend == LineBlend::linear ||
                         (settings.line_blend == LineBlend::automatic && !formats.display);
@@ -19,8 +17,6 @@ FilmSettings film_settings(const Settings& settings, const PixelFormats& formats
             .display = formats.display,
             .linear = formats.linear};
 }
-
-}  // namespace
 
 RenderStats& RenderStats::operator+=(const RenderStats& other) {
     trace_ms += other.trace_ms;

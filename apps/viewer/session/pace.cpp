@@ -1,5 +1,6 @@
 #include "session/pace.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -15,6 +16,13 @@ double scale_at(int step) { return kScales[static_cast<std::size_t>(step)]; }
 }  // namespace
 
 double Pace::scale() const { return scale_at(step_); }
+
+void Pace::plain_took(double ms) {
+    // Lines may add a fifth. Below the shortest, nobody sees a frame come sooner.
+    constexpr double kWithLines = 1.2;
+    constexpr double kShortest = 8.0;
+    target_ms_ = std::clamp(kWithLines * ms, kShortest, kLongest);
+}
 
 void Pace::frame_took(double scale, double ms) {
     known_ = true;

@@ -2,21 +2,23 @@
 
 namespace inktrace::viewer {
 
-/// Chooses how large the pictures of a moving camera are drawn, as a share of the window's side, so
-/// that a frame takes no longer than it may. Lines keep their width: it shrinks with the picture,
-/// which the window then enlarges.
+/// Chooses how many rays the pictures of a moving camera take, as a share of those along a pixel's
+/// side, so that lines cost no more than a little of what the frame costs without them, and a frame
+/// no more than is bearable.
 class Pace {
   public:
-    explicit Pace(double target_ms = 45.0) : target_ms_(target_ms) {}
-
     double scale() const;
-    /// Learns from a frame drawn at a scale.
+    /// Learns what a frame takes without lines, with one ray a pixel.
+    void plain_took(double ms);
+    /// Learns from a frame drawn with a share of the rays.
     void frame_took(double scale, double ms);
     /// Learns what a picture in full takes, where nothing else is known yet.
     void full_took(double ms);
+    double target_ms() const { return target_ms_; }
 
   private:
-    double target_ms_;
+    static constexpr double kLongest = 40.0;  ///< ms: 25 frames a second
+    double target_ms_ = kLongest;
     int step_ = 0;  ///< index into the scales
     bool known_ = false;
 };

@@ -83,10 +83,10 @@ void Painter::finish(Painting painting) {
 
 void Painter::quick(const PaintRequest& request) {
     const double scale = pace_.scale();
-    const Settings cheap = quick_settings(request.settings);
-    const Settings settings = scale < 1.0 ? cheap.scaled(scale) : cheap;
+    const Settings settings = quick_settings(request.settings);
     const auto start = Clock::now();
     RenderOptions options;
+    options.draft = scale;
     options.cancel = &ending_;
     auto picture = std::make_shared<const Picture>(request.renderer->render(settings, options));
     const double ms = ms_since(start);
@@ -128,6 +128,27 @@ void Painter::in_full(const PaintRequest& request) {
             .latency_ms = ms_since(request.asked)});
 }
 
+/// What a frame without lines takes, once a scene and size: with lines it may take little longer.
+void Painter::learn_plain(const PaintRequest& request) {
+    const std::string size = request.settings.get("size");
+    if (plain_of_.lock() == request.renderer && plain_size_ == size) return;
+    Settings plain = quick_settings(request.settings);
+    plain.set("lines", "none").set("hidden", "none").set("aa", "");
+    RenderOptions options;
+    options.cancel = &cancel_;
+    double best = 1e9;
+    for (int k = 0; k < 3; ++k) {
+        const auto start = Clock::now();
+        request.renderer->render(plain, options);
+        best = std::min(best, ms_since(start));
+        constexpr double kSlow = 50.0;  // no need to know better
+        if (best > kSlow) break;
+    }
+    pace_.plain_took(best);
+    plain_of_ = request.renderer;
+    plain_size_ = size;
+}
+
 void Painter::run() {
     std::unique_lock lock(mutex_);
     for (;;) {
@@ -135,6 +156,7 @@ void Painter::run() {
         if (ending_) return;
         const PaintRequest request = *std::exchange(waiting_, std::nullopt);
         running_ = true;
+        progress_ = 0.0;
         try {
             if (request.in_motion) {
                 lock.unlock();
@@ -146,10 +168,14 @@ void Painter::run() {
                 if (ending_) return;
             }
             cancel_ = false;
-            progress_ = 0.0;
             if (!waiting_ && !(request.in_motion && shown_exactly_)) {
                 lock.unlock();
                 in_full(request);
+                lock.lock();
+            }
+            if (!waiting_ && !ending_) {
+                lock.unlock();
+                learn_plain(request);
                 lock.lock();
             }
         } catch (const Error& error) {
@@ -157,6 +183,7 @@ void Painter::run() {
             if (error.kind() == Error::Kind::cancelled) {
                 const Clock::time_point asked{Clock::duration(cancelled_at_.load())};
                 give_way_ms_ = ms_since(asked);
+                ++cancelled_;
                 // What takes long to stop has tiles that are too large for its settings.
                 if (give_way_ms_ > 15.0) {
                     ms_per_megapixel_ = std::max(ms_per_megapixel_ * 4.0, 8000.0);

@@ -3,6 +3,7 @@
 #include <atomic>
 #include <chrono>
 #include <condition_variable>
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <mutex>
@@ -30,7 +31,7 @@ struct Painting {
     std::shared_ptr<const Picture> picture;
     Settings settings;        ///< of the request
     bool exact = false;       ///< byte for byte what `Renderer::render` gives for these settings
-    double scale = 1.0;       ///< of the picture to the request's size
+    double scale = 1.0;       ///< rays along a pixel's side, below 1 for a draft
     double frame_ms = 0.0;    ///< drawing it took
     double latency_ms = 0.0;  ///< from the request
 };
@@ -55,11 +56,14 @@ class Painter {
     double progress() const { return progress_.load(); }
     /// What it took the last picture that had to give way to do so, ms.
     double give_way_ms() const { return give_way_ms_.load(); }
+    /// Pictures that had to give way so far.
+    std::uint64_t cancelled() const { return cancelled_.load(); }
 
   private:
     void run();
     void quick(const PaintRequest& request);
     void in_full(const PaintRequest& request);
+    void learn_plain(const PaintRequest& request);
     void finish(Painting painting);
 
     std::function<void()> news_;
@@ -74,9 +78,12 @@ class Painter {
     std::atomic<Clock::rep> cancelled_at_ = 0;
     std::atomic<double> progress_ = 0.0;
     std::atomic<double> give_way_ms_ = 0.0;
+    std::atomic<std::uint64_t> cancelled_ = 0;
     Pace pace_;
-    double ms_per_megapixel_ = 0.0;  ///< of pictures in full, as far as known
-    bool shown_exactly_ = false;     ///< the quick picture was the picture in full
+    std::weak_ptr<const Renderer> plain_of_;  ///< whose frames without lines the pace knows,
+    std::string plain_size_;                  ///< and of which size
+    double ms_per_megapixel_ = 0.0;           ///< of pictures in full, as far as known
+    bool shown_exactly_ = false;              ///< the quick picture was the picture in full
     std::thread thread_;
 };
 

@@ -95,7 +95,9 @@ class Session {
     bool busy() const { return painter_.busy() || loader_.busy() || exporter_.busy(); }
     bool loading() const { return loader_.busy(); }
     double refinement() const { return painter_.progress(); }
+    /// What it took the last picture that gave way to a move to do so, and how many have.
     double give_way_ms() const { return painter_.give_way_ms(); }
+    std::uint64_t cancelled() const { return painter_.cancelled(); }
     /// When `update` should be called even without news: while a trajectory plays.
     std::optional<Clock::time_point> next_update() const;
 

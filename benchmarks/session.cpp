@@ -1,0 +1,241 @@
+#include "session.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <condition_variable>
+#include <cstdio>
+#include <deque>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <span>
+#include <stdexcept>
+
+#include "session/session.h"
+
+namespace ink::bench {
+
+namespace {
+
+using inktrace::viewer::Clock;
+using inktrace::viewer::Session;
+
+double ms_since(Clock::time_point start) {
+    return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+}
+
+/// The value below which a share of them lies.
+double quantile(std::vector<double> values, double share) {
+    if (values.empty()) return 0.0;
+    std::ranges::sort(values);
+    const auto last = static_cast<double>(values.size() - 1);
+    return values[static_cast<std::size_t>(std::ceil(share * last))];
+}
+
+/// A session with someone who waits for it.
+class Driver {
+  public:
+    Driver() : session([this] { wake(); }) {}
+
+    /// Takes in news until `done`.
+    void wait_for(const std::function<bool()>& done) {
+        const auto end = Clock::now() + std::chrono::minutes(2);
+        for (;;) {
+            session.update();
+            if (done()) return;
+            if (session.message().is_error) throw std::runtime_error(session.message().text);
+            if (Clock::now() > end) throw std::runtime_error("the session has stopped");
+            std::unique_lock lock(mutex_);
+            news_.wait_for(lock, std::chrono::milliseconds(5), [this] { return woken_; });
+            woken_ = false;
+        }
+    }
+    /// Takes in news for some time.
+    void wait(double ms) {
+        const auto start = Clock::now();
+        while (ms_since(start) < ms) {
+            std::unique_lock lock(mutex_);
+            const std::chrono::duration<double, std::milli> left(ms - ms_since(start));
+            news_.wait_for(lock, left, [this] { return woken_; });
+            woken_ = false;
+            lock.unlock();
+            session.update();
+        }
+    }
+    void wait_for_picture() {
+        wait_for([this] {
+            return !session.busy() && session.painting().picture && session.painting().exact;
+        });
+    }
+    void turn(double right_deg, double down_deg) {
+        session.move_camera(session.camera().turned(right_deg, down_deg));
+    }
+
+  private:
+    void wake() {
+        {
+            const std::scoped_lock lock(mutex_);
+            woken_ = true;
+        }
+        news_.notify_all();
+    }
+    std::mutex mutex_;
+    std::condition_variable news_;
+    bool woken_ = false;
+
+  public:
+    Session session;
+};
+
+inktrace::Renderer load(const std::filesystem::path& file, const inktrace::Settings& settings) {
+    inktrace::Scene scene;
+    scene.load(file, settings);
+    return inktrace::Renderer(std::move(scene));
+}
+
+/// What moves of a mouse, 125 a second, bring about; frames without lines are drawn in between, so
+/// that a machine that slows down slows both.
+class Turning {
+  public:
+    Turning(Driver& driver, const inktrace::Renderer& renderer)
+        : driver_(driver), renderer_(renderer) {}
+
+    void round(int frames) {
+        turn(frames);
+        inktrace::Settings plain = driver_.session.settings();
+        plain.set("lines", "none").set("aa", "");
+        constexpr int kPlain = 5;
+        driver_.wait_for_picture();
+        for (int k = 0; k < kPlain; ++k) {
+            const auto start = Clock::now();
+            renderer_.render(plain);
+            if (k > 0) plain_ms.push_back(ms_since(start));
+        }
+    }
+
+    std::vector<double> plain_ms, frame_ms, latency;
+    double share = 1.0;
+
+  private:
+    struct Event {
+        std::string eye;
+        Clock::time_point time;
+    };
+
+    void turn(int frames) {
+        constexpr double kBetweenEvents = 8.0;
+        std::deque<Event> events;
+        std::uint64_t seen = driver_.session.picture_number();
+        for (int shown = 0; shown < frames;) {
+            driver_.turn(0.7, 0.2);
+            events.push_back({driver_.session.settings().get("eye"), Clock::now()});
+            const auto next = Clock::now() + std::chrono::microseconds(int(kBetweenEvents * 1e3));
+            while (Clock::now() < next) {
+                driver_.wait(std::min(1.0, kBetweenEvents));
+                if (driver_.session.picture_number() == seen) continue;
+                seen = driver_.session.picture_number();
+                ++shown;
+                take(events);
+            }
+        }
+    }
+
+    /// A picture that shows an event shows all before it.
+    void take(std::deque<Event>& events) {
+        const inktrace::viewer::Painting& painting = driver_.session.painting();
+        const std::string eye = painting.settings.get("eye");
+        const auto shown =
+            std::ranges::find_if(events, [&](const Event& event) { return event.eye == eye; });
+        if (shown == events.end()) return;
+        frame_ms.push_back(painting.frame_ms);
+        share = painting.scale;
+        for (auto event = events.begin(); event <= shown; ++event) {
+            latency.push_back(ms_since(event->time) / painting.frame_ms);
+        }
+        events.erase(events.begin(), shown + 1);
+    }
+
+    Driver& driver_;
+    const inktrace::Renderer& renderer_;
+};
+
+/// Moves the camera at different moments of pictures being refined.
+std::vector<double> interrupt(Driver& driver, int moves) {
+    std::vector<double> times;
+    Session& session = driver.session;
+    const auto shown = [&] {
+        return session.painting().settings.get("eye") == session.settings().get("eye");
+    };
+    for (int k = 0; k < moves; ++k) {
+        // At a moment between the beginning and the end that no period of the work hits.
+        const double moment = std::fmod(0.5 + k * 0.618033988749895, 1.0) * 0.9;
+        driver.wait_for(
+            [&] { return shown() && (session.painting().exact || session.refinement() > moment); });
+        const std::uint64_t before = session.cancelled();
+        driver.turn(2.0, 0.0);
+        driver.wait_for(shown);
+        if (session.cancelled() != before) times.push_back(session.give_way_ms());
+    }
+    return times;
+}
+
+}  // namespace
+
+SessionRow measure_session(const std::filesystem::path& file, int side, int rounds,
+                           const std::vector<std::pair<std::string, std::string>>& flags) {
+    Driver driver;
+    Session& session = driver.session;
+    session.open({file}, flags);
+    session.resize({side, side});
+    driver.wait_for_picture();
+    const inktrace::Renderer renderer = load(file, session.settings());
+    SessionRow row{.what = file.filename().string()};
+
+    Turning turning(driver, renderer);
+    constexpr int kFrames = 20;
+    turning.round(kFrames);  // the pace settles
+    turning.plain_ms.clear();
+    turning.frame_ms.clear();
+    turning.latency.clear();
+    for (int k = 0; k < rounds; ++k) turning.round(kFrames);
+    row.plain_ms = quantile(turning.plain_ms, 0.5);
+    row.turning_ms = quantile(turning.frame_ms, 0.5);
+    row.rays_share = turning.share;
+    row.latency = quantile(turning.latency, 0.5);
+    row.latency_99 = quantile(turning.latency, 0.99);
+
+    driver.wait_for_picture();
+    row.refined_ms = session.painting().frame_ms;
+    const inktrace::Picture expected = renderer.render(session.settings());
+    row.exact = std::ranges::equal(session.painting().picture->rgba(), expected.rgba());
+
+    const std::vector<double> times = interrupt(driver, 30 * rounds);
+    row.moves = static_cast<int>(times.size());
+    row.gives_way_ms = quantile(times, 0.5);
+    row.gives_way_99_ms = quantile(times, 0.99);
+    row.gives_way_most_ms = quantile(times, 1.0);
+    return row;
+}
+
+void print_heading_of_sessions() {
+    fmt::print("{:<30}{:>9}{:>9}{:>7}{:>6}{:>14}{:>10}{:>7}{:>24}\n", "", "no lines", "turning",
+               "ratio", "rays", "latency", "refined", "exact", "gives way, ms");
+    fmt::print("{:<30}{:>9}{:>9}{:>7}{:>6}{:>14}{:>10}{:>7}{:>24}\n", "", "ms", "ms", "", "",
+               "frames, 99 %", "ms", "", "median, 99 %, most");
+    std::fflush(stdout);
+}
+
+void print(const SessionRow& row) {
+    fmt::print(
+        "{:<30}{:>9.2f}{:>9.2f}{:>7.2f}{:>6.3g}{:>7.2f}{:>7.2f}{:>10.1f}{:>7}{:>8.1f}{:>8.1f}{:>8.1"
+        "f}{:>5}\n",
+        row.what, row.plain_ms, row.turning_ms, row.turning_ms / row.plain_ms, row.rays_share,
+        row.latency, row.latency_99, row.refined_ms, row.exact ? "yes" : "NO", row.gives_way_ms,
+        row.gives_way_99_ms, row.gives_way_most_ms, row.moves);
+    std::fflush(stdout);
+}
+
+}  // namespace ink::bench

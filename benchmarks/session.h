@@ -1,0 +1,33 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace ink::bench {
+
+/// What the interactive viewer does with one file.
+struct SessionRow {
+    std::string what;
+    double plain_ms = 0.0;    ///< median, a frame without lines, one ray a pixel
+    double turning_ms = 0.0;  ///< median, a frame with lines while the camera turns
+    double rays_share = 1.0;  ///< of a pixel's side, that such frames take rays for
+    /// From an event to the first picture that shows it, in frames: median, and of 99 %.
+    double latency = 0.0, latency_99 = 0.0;
+    double refined_ms = 0.0;  ///< the picture in full
+    bool exact = false;       ///< and equals what `render` gives, byte for byte
+    /// From a move during refinement until the painter was free: median, of 99 %, longest.
+    double gives_way_ms = 0.0, gives_way_99_ms = 0.0, gives_way_most_ms = 0.0;
+    int moves = 0;  ///< that these were measured with
+};
+
+/// Turns the camera of a session on a square picture, as a hand would, for `rounds` times 20 frames
+/// and then moves it while pictures are refined. `flags` are settings, with their values.
+SessionRow measure_session(const std::filesystem::path& file, int side, int rounds,
+                           const std::vector<std::pair<std::string, std::string>>& flags);
+
+void print_heading_of_sessions();
+void print(const SessionRow& row);
+
+}  // namespace ink::bench

@@ -1,0 +1,197 @@
+#include "render/enlarge.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "base/multiversion.h"
+
+namespace ink {
+
+namespace {
+
+/// Place of a large picture's column or row among those of the small one, whose centres are at
+/// whole numbers.
+float place(int at, int large, int small, float factor) {
+    const float from_middle = static_cast<float>(at) + 0.5F - 0.5F * static_cast<float>(large);
+    return 0.5F * static_cast<float>(small) + from_middle / factor - 0.5F;
+}
+
+std::vector<int> nearest(int large, int small, float factor) {
+    std::vector<int> result(static_cast<std::size_t>(large));
+    for (int k = 0; k < large; ++k) {
+        const auto near = static_cast<int>(std::lround(place(k, large, small, factor)));
+        result[static_cast<std::size_t>(k)] = std::clamp(near, 0, small - 1);
+    }
+    return result;
+}
+
+constexpr std::uint32_t kOne = 256;
+
+/// The bytes of two pixels, mixed two at a time.
+INKTRACE_INLINE std::uint32_t mix(std::uint32_t a, std::uint32_t b, std::uint32_t share) {
+    constexpr std::uint32_t kEven = 0x00FF00FFU;
+    const std::uint32_t even = (a & kEven) * (kOne - share) + (b & kEven) * share;
+    const std::uint32_t odd = ((a >> 8U) & kEven) * (kOne - share) + ((b >> 8U) & kEven) * share;
+    return ((even >> 8U) & kEven) | (odd & ~kEven);
+}
+
+INKTRACE_MULTIVERSION
+void mix_rows(const std::uint32_t* a, const std::uint32_t* b, std::uint32_t share,
+              std::size_t count, std::uint32_t* __restrict out) {
+    for (std::size_t k = 0; k < count; ++k) out[k] = mix(a[k], b[k], share);
+}
+
+/// Which side of a segment's line a point lies on.
+float side_of(const Segment& segment, Vec2f point) {
+    const Vec2f d = segment.b - segment.a;
+    const Vec2f v = point - segment.a;
+    return d.x * v.y - d.y * v.x;
+}
+
+/// Whether colours change across a line, from one side of its cell to another.
+bool divides(const ColoredSegment& line) {
+    const Segment& segment = line.segment;
+    return segment.spans_cell && segment.type != LineType::mesh && segment.type != LineType::ridge;
+}
+
+/// A pixel of which some corners of its cell count, by their weights.
+std::uint32_t mixed(const std::array<std::uint32_t, 4>& corners,
+                    const std::array<float, 4>& weights) {
+    std::array<float, 4> sum{};
+    float all = 0.0F;
+    for (std::size_t k = 0; k < 4; ++k) {
+        const float alpha = static_cast<float>(corners[k] >> 24U);
+        const float weight = weights[k] * alpha;
+        for (unsigned c = 0; c < 3; ++c) {
+            sum[c] += weight * static_cast<float>((corners[k] >> (8U * c)) & 0xFFU);
+        }
+        sum[3] += weight;
+        all += weights[k];
+    }
+    std::uint32_t pixel = static_cast<std::uint32_t>(sum[3] / all + 0.5F) << 24U;
+    for (unsigned c = 0; c < 3 && sum[3] > 0.0F; ++c) {
+        pixel |= static_cast<std::uint32_t>(sum[c] / sum[3] + 0.5F) << (8U * c);
+    }
+    return pixel;
+}
+
+}  // namespace
+
+Enlargement::Enlargement(Size large, double share)
+    : large_(large),
+      small_{1, std::clamp(static_cast<int>(std::lround(large.height * share)), 1, large.height)},
+      factor_(static_cast<float>(large.height) / static_cast<float>(small_.height)) {
+    small_.width =
+        std::max(1, static_cast<int>(std::ceil(static_cast<float>(large.width) / factor_ - 1e-4F)));
+}
+
+std::vector<int> Enlargement::columns() const {
+    return nearest(large_.width, small_.width, factor_);
+}
+std::vector<int> Enlargement::rows() const {
+    return nearest(large_.height, small_.height, factor_);
+}
+
+PixelEnlarger::PixelEnlarger(const Enlargement& enlargement, const DisplayImage& pixels)
+    : enlargement_(enlargement),
+      pixels_(pixels),
+      columns_(between(enlargement.large().width, pixels.size.width, enlargement.factor())),
+      rows_(between(enlargement.large().height, pixels.size.height, enlargement.factor())) {}
+
+std::vector<PixelEnlarger::Between> PixelEnlarger::between(int large, int small, float factor) {
+    std::vector<Between> result(static_cast<std::size_t>(large));
+    for (int k = 0; k < large; ++k) {
+        const float at =
+            std::clamp(place(k, large, small, factor), 0.0F, static_cast<float>(small - 1));
+        const int first = static_cast<int>(at);
+        const float share = at - static_cast<float>(first);
+        result[static_cast<std::size_t>(k)] = {
+            first, std::min(first + 1, small - 1),
+            static_cast<std::uint32_t>(share * static_cast<float>(kOne))};
+    }
+    return result;
+}
+
+void PixelEnlarger::enlarge_row(int y, Film& film) const {
+    const auto width = static_cast<std::size_t>(pixels_.size.width);
+    const Between& rows = rows_[static_cast<std::size_t>(y)];
+    const std::uint32_t* const pixels = pixels_.pixels.data();
+    thread_local std::vector<std::uint32_t> mixed;
+    thread_local std::vector<std::uint32_t> out;
+    mixed.resize(width);
+    out.resize(columns_.size());
+    mix_rows(pixels + static_cast<std::size_t>(rows.first) * width,
+             pixels + static_cast<std::size_t>(rows.second) * width, rows.share, width,
+             mixed.data());
+    for (std::size_t x = 0; x < out.size(); ++x) {
+        const Between& columns = columns_[x];
+        out[x] = mix(mixed[static_cast<std::size_t>(columns.first)],
+                     mixed[static_cast<std::size_t>(columns.second)], columns.share);
+    }
+    film.put_display(0, y, out);
+}
+
+void PixelEnlarger::sharpen(const Tile& tile, std::span<const ColoredSegment> lines,
+                            Film& film) const {
+    const auto cell_of = [](const Segment& s) {
+        return std::pair{static_cast<int>(std::floor((s.a.x + s.b.x) * 0.5F - 0.5F)),
+                         static_cast<int>(std::floor((s.a.y + s.b.y) * 0.5F - 0.5F))};
+    };
+    for (std::size_t first = 0; first < lines.size();) {
+        const auto cell = cell_of(lines[first].segment);
+        std::size_t last = first + 1;
+        while (last < lines.size() && cell_of(lines[last].segment) == cell) ++last;
+        const auto [x, y] = cell;
+        if (x >= tile.x0 && x < tile.x1 && y >= tile.y0 && y < tile.y1) {
+            sharpen_cell(x, y, lines.subspan(first, last - first), film);
+        }
+        first = last;
+    }
+}
+
+void PixelEnlarger::sharpen_cell(int column, int row, std::span<const ColoredSegment> lines,
+                                 Film& film) const {
+    if (std::ranges::none_of(lines, divides)) return;
+    const Size size = pixels_.size;
+    std::array<std::uint32_t, 4> corners;
+    std::array<Vec2f, 4> places;
+    for (std::size_t k = 0; k < 4; ++k) {
+        const int i = column + static_cast<int>(k % 2);
+        const int j = row + static_cast<int>(k / 2);
+        places[k] = {static_cast<float>(i) + 0.5F, static_cast<float>(j) + 0.5F};
+        corners[k] = pixels_.pixels[static_cast<std::size_t>(std::clamp(j, 0, size.height - 1)) *
+                                        static_cast<std::size_t>(size.width) +
+                                    static_cast<std::size_t>(std::clamp(i, 0, size.width - 1))];
+    }
+    // Pixels whose centres lie in the cell.
+    const Vec2f lower = enlargement_.enlarged(places[0]);
+    const Vec2f upper = enlargement_.enlarged(places[3]);
+    const auto first_of = [](float at) { return static_cast<int>(std::ceil(at - 0.5F)); };
+    const Size large = enlargement_.large();
+    for (int y = std::max(first_of(lower.y), 0); y < std::min(first_of(upper.y), large.height);
+         ++y) {
+        for (int x = std::max(first_of(lower.x), 0); x < std::min(first_of(upper.x), large.width);
+             ++x) {
+            const Vec2f point =
+                enlargement_.shrunk({static_cast<float>(x) + 0.5F, static_cast<float>(y) + 0.5F});
+            const float right = point.x - places[0].x;
+            const float below = point.y - places[0].y;
+            std::array<float, 4> weights{(1 - right) * (1 - below), right * (1 - below),
+                                         (1 - right) * below, right * below};
+            for (const ColoredSegment& line : lines) {
+                if (!divides(line)) continue;
+                const float side = side_of(line.segment, point);
+                for (std::size_t k = 0; k < 4; ++k) {
+                    if (side * side_of(line.segment, places[k]) < 0.0F) weights[k] = 0.0F;
+                }
+            }
+            constexpr float kLeast = 1e-3F;
+            if (weights[0] + weights[1] + weights[2] + weights[3] < kLeast) continue;
+            const std::uint32_t pixel = mixed(corners, weights);
+            film.put_display(x, y, {&pixel, 1});
+        }
+    }
+}
+
+}  // namespace ink
