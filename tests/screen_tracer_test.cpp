@@ -570,6 +570,20 @@ TEST(ScreenTracer, PrefersTheFirstOfBoxesThatFillTheSamePlace) {
     expect_first_wins(Seen({solid, object}, oblique_view(), {512, 512}), 1);
 }
 
+TEST(SceneTracer, LeavesPixelsThatAreFullOfPrimitivesToEmbree) {
+    std::mt19937 random(16);
+    std::vector<Sphere> dust;
+    for (int i = 0; i < 60000; ++i) dust.push_back({uniform_point(random), 0.004F});
+    const Scene scene({sphere_object(std::move(dust))});
+    const Clusters clusters(scene);
+    const auto suits = [&](int side) {
+        const Camera camera(scene, {}, {side, side});
+        return suits_screen_tracer(clusters, camera.projection());
+    };
+    EXPECT_TRUE(suits(1024));
+    EXPECT_FALSE(suits(16));
+}
+
 TEST(SceneTracer, MergesWhatOnlyEmbreeTracesByDepth) {
     std::vector<Object> objects = random_objects(12, 60, 60);
     std::mt19937 random(3);

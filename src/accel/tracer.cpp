@@ -145,7 +145,8 @@ class SceneTracer final : public Tracer {
 
     std::unique_ptr<FrameTracer> frame(const Projection& projection, int threads) const override {
         const auto objects = std::span(scene_.objects());
-        if (!projection.sees_all() || std::ranges::none_of(objects, on_screen)) {
+        if (!projection.sees_all() || std::ranges::none_of(objects, on_screen) ||
+            !suits_screen_tracer(clusters_, projection)) {
             return all_.get().frame(projection, threads);
         }
         auto screen = make_screen_tracer(clusters_, projection);

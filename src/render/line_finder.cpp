@@ -258,8 +258,12 @@ void LineFinder::add_ridges(const Tile& tile, std::vector<ColoredSegment>& found
 bool LineFinder::is_smooth(const SuspectEdge& edge) const {
     if (edge.suspicion == Suspicion::id) return false;
     const LatticeHit a = hit_at(edge.i, edge.j);
-    const LatticeHit b = edge.down ? hit_at(edge.i, edge.j + 1) : hit_at(edge.i + 1, edge.j);
-    return edges_.surfaces.smooth_between(*a.hits, a.lane, *b.hits, b.lane);
+    const int i_b = edge.i + (edge.down ? 0 : 1);
+    const int j_b = edge.j + (edge.down ? 1 : 0);
+    const LatticeHit b = hit_at(i_b, j_b);
+    const Vec3f at_a = grid_.sample(grid_.index(edge.i, edge.j)).position;
+    const Vec3f at_b = grid_.sample(grid_.index(i_b, j_b)).position;
+    return edges_.surfaces.smooth_between(*a.hits, a.lane, &at_a, *b.hits, b.lane, &at_b);
 }
 
 /// What a point of the grid hit; it must not be background.

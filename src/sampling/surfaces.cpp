@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <cstdint>
 #include <limits>
 #include <variant>
 
@@ -61,6 +63,52 @@ double way_out_of_triangle(const Viewpoint& viewpoint, const Mesh& mesh,
     return out;
 }
 
+/// Which part of a frustum's surface a hit lies on, with its normal towards the viewer.
+enum class FrustumPart : std::uint8_t { cap, outside, inside };
+
+FrustumPart frustum_part(const UnitShape& shape, const Placement& placement, Vec3f normal,
+                         Vec3f at) {
+    const Vec3d x = to_double(placement.x_axis);
+    const Vec3d y = to_double(placement.y_axis);
+    const Vec3d z = to_double(placement.z_axis);
+    const Vec3d along = cross(x, y);
+    const Vec3d n = to_double(normal);
+    constexpr double kParallel = 1.0 - 1e-6;
+    const double cosine = std::abs(dot(n, along)) / length(along);
+    if (shape.capped && cosine > kParallel) return FrustumPart::cap;
+    // Coordinates of the unit shape, times the map's volume; the outward normal of its side.
+    const Vec3d p = to_double(at) - to_double(placement.origin);
+    const double volume = dot(z, along);
+    const double height = dot(along, p) / volume;
+    const double radius = 0.5 * (1.0 + shape.a) + 0.5 * (shape.a - 1.0) * height;
+    const Vec3d yz = cross(y, z);
+    const Vec3d zx = cross(z, x);
+    const Vec3d outward = yz * (dot(yz, p) / volume) + zx * (dot(zx, p) / volume) -
+                          along * (0.5 * (shape.a - 1.0) * radius);
+    return dot(outward, n) * volume > 0.0 ? FrustumPart::outside : FrustumPart::inside;
+}
+
+/// Whether two hits on one glyph, with normals towards the viewer, lie on a part of its surface
+/// that is smooth and hides none of itself.
+bool smooth_glyph(const UnitShape& shape, const Placement& placement, Vec3f normal_a,
+                  const Vec3f* at_a, Vec3f normal_b, const Vec3f* at_b) {
+    switch (shape.kind) {
+        case GlyphKind::ellipsoid:
+        case GlyphKind::disc:
+        case GlyphKind::rectangle: return true;
+        case GlyphKind::box: return dot(normal_a, normal_b) > 1.0F - 1e-6F;
+        case GlyphKind::frustum:
+            return at_a != nullptr && at_b != nullptr &&
+                   frustum_part(shape, placement, normal_a, *at_a) ==
+                       frustum_part(shape, placement, normal_b, *at_b);
+        case GlyphKind::torus:
+        case GlyphKind::superellipsoid:
+        case GlyphKind::gaussian:
+        case GlyphKind::waves: return false;
+    }
+    return false;
+}
+
 }  // namespace
 
 void Surfaces::describe(const HitPacket& hits, int lane, Sample& sample) const {
@@ -97,14 +145,18 @@ float Surfaces::face_crossing(const Viewpoint& viewpoint, Vec2f a, const HitPack
     return static_cast<float>(std::clamp(0.5 * (leaves + enters), 0.0, 1.0));
 }
 
-bool Surfaces::smooth_between(const HitPacket& a, int lane_a, const HitPacket& b,
-                              int lane_b) const {
+bool Surfaces::smooth_between(const HitPacket& a, int lane_a, const Vec3f* at_a, const HitPacket& b,
+                              int lane_b, const Vec3f* at_b) const {
     if (a.object[lane_a] == kNoObject || a.object[lane_a] != b.object[lane_b]) return false;
     const Object& object = scene_.objects()[a.object[lane_a]];
     const std::uint32_t primitive_a = a.primitive[lane_a];
     const std::uint32_t primitive_b = b.primitive[lane_b];
     const auto* mesh = std::get_if<Mesh>(&object.shape);
     if (primitive_a == primitive_b) {
+        if (const auto* glyphs = std::get_if<Glyphs>(&object.shape)) {
+            return smooth_glyph(glyphs->shape, glyphs->placements[primitive_a],
+                                hit_normal(a, lane_a), at_a, hit_normal(b, lane_b), at_b);
+        }
         return mesh != nullptr || std::holds_alternative<Spheres>(object.shape);
     }
     const bool facets_turn = object.normals.value_or(normals_) == NormalSource::geometric;

@@ -29,9 +29,15 @@ class Surfaces {
                         Vec2f b, const HitPacket& hits_b, int lane_b) const;
 
     /// Whether no line can run between two hits that are neighbours on screen: they lie on one
-    /// sphere, one triangle, or two triangles that share an edge which is no crease, and neither of
-    /// which is turned away. False where that is not known.
-    bool smooth_between(const HitPacket& a, int lane_a, const HitPacket& b, int lane_b) const;
+    /// sphere, ellipsoid, triangle, disc, face of a box, or on the side of one frustum, or on two
+    /// triangles that share an edge which is no crease, and neither of which is turned away. False
+    /// where that is not known.
+    bool smooth_between(const HitPacket& a, int lane_a, const HitPacket& b, int lane_b) const {
+        return smooth_between(a, lane_a, nullptr, b, lane_b, nullptr);
+    }
+    /// The same, of hits whose positions in the scene frame are known, unless null.
+    bool smooth_between(const HitPacket& a, int lane_a, const Vec3f* at_a, const HitPacket& b,
+                        int lane_b, const Vec3f* at_b) const;
 
   private:
     bool across_smooth_edge(const Mesh& mesh, std::uint32_t a, Vec3f normal_a, std::uint32_t b,
