@@ -5,7 +5,7 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
-#include <limits>
+#include <iterator>
 #include <numeric>
 #include <optional>
 #include <tuple>
@@ -82,12 +82,14 @@ struct LooseEnd {
 class FoldMender {
   public:
     FoldMender(std::span<const Segment> lines, const Viewpoint& viewpoint, float spacing,
-               float width, const SampleFunction& sample, const FoldSettings& settings)
+               float width, const SampleFunction& sample, const AreaFunction& enter,
+               const FoldSettings& settings)
         : lines_(lines),
           viewpoint_(viewpoint),
           spacing_(spacing),
           width_(width),
           sample_(sample),
+          enter_(enter),
           settings_(settings) {}
 
     FoldRepairs run() {
@@ -215,16 +217,35 @@ class FoldMender {
 
     /// Ends of one square of the picture in step, so that their rays are close together.
     void follow_valleys() {
-        const auto square = [](const LooseEnd& end) {
-            constexpr float kSide = 64.0F;
-            return std::pair{std::floor(end.point.y / kSide), std::floor(end.point.x / kSide)};
+        for_each_square(
+            ends_, [](const LooseEnd& end) { return end.point; },
+            [&](std::span<LooseEnd> group) {
+                while (step(group)) {
+                }
+            });
+    }
+
+    /// Sorts what lies on the picture by squares, says where the next rays go, and calls `visit`
+    /// for what lies in each square.
+    template <class Thing, class Where, class Visit>
+    void for_each_square(std::vector<Thing>& things, Where where, Visit visit) const {
+        constexpr float kSide = 64.0F;
+        const auto square = [&](const Thing& thing) {
+            const Vec2f p = where(thing);
+            return std::pair{std::floor(p.y / kSide), std::floor(p.x / kSide)};
         };
-        std::ranges::stable_sort(ends_, {}, square);
-        for (std::size_t first = 0, last = 0; first < ends_.size(); first = last) {
-            while (last < ends_.size() && square(ends_[last]) == square(ends_[first])) ++last;
-            const std::span<LooseEnd> group = std::span(ends_).subspan(first, last - first);
-            while (step(group)) {
+        std::ranges::stable_sort(things, {}, square);
+        for (std::size_t first = 0, last = 0; first < things.size(); first = last) {
+            Vec2f low = where(things[first]);
+            Vec2f high = low;
+            for (; last < things.size() && square(things[last]) == square(things[first]); ++last) {
+                const Vec2f p = where(things[last]);
+                low = {std::min(low.x, p.x), std::min(low.y, p.y)};
+                high = {std::max(high.x, p.x), std::max(high.y, p.y)};
             }
+            const float reach = 4.0F * spacing_;
+            if (enter_) enter_(low - Vec2f{reach, reach}, high + Vec2f{reach, reach});
+            visit(std::span(things).subspan(first, last - first));
         }
     }
 
@@ -406,27 +427,37 @@ class FoldMender {
     std::vector<std::uint8_t> deep_groups(Ask asked) {
         std::vector<std::uint8_t> deep(lines_.size());
         std::vector<std::uint32_t> measured;
+        std::ranges::copy_if(folds_, std::back_inserter(measured), asked);
+        for_each_square(
+            measured, [&](std::uint32_t k) { return (lines_[k].a + lines_[k].b) * 0.5F; },
+            [&](std::span<const std::uint32_t> group) {
+                measure_depths(group);
+                for (std::size_t n = 0; n < group.size(); ++n) {
+                    if (deep_[n] != 0) deep[root(group[n])] = 1;
+                }
+            });
+        return deep;
+    }
+
+    void measure_depths(std::span<const std::uint32_t> folds) {
         points_.clear();
-        for (const std::uint32_t k : folds_) {
-            if (!asked(k)) continue;
-            measured.push_back(k);
+        for (const std::uint32_t k : folds) {
             const Vec2f middle = (lines_[k].a + lines_[k].b) * 0.5F;
             const Vec2f aside = left_of(unit(lines_[k].b - lines_[k].a)) * (0.25F * spacing_);
             points_.push_back(middle + aside);
             points_.push_back(middle - aside);
         }
         samples_.resize(points_.size());
-        if (!points_.empty()) sample_(points_, samples_);
-        for (std::size_t n = 0; n < measured.size(); ++n) {
+        sample_(points_, samples_);
+        deep_.clear();
+        for (std::size_t n = 0; n < folds.size(); ++n) {
             const Sample& a = samples_[2 * n];
             const Sample& b = samples_[2 * n + 1];
             const float pixel =
                 length_between(points_[2 * n], points_[2 * n + 1], a) / (0.5F * spacing_);
-            if (a.id != b.id || depth_between(a, b) > settings_.crumb_depth * width_ * pixel) {
-                deep[root(measured[n])] = 1;
-            }
+            const float enough = settings_.crumb_depth * width_ * pixel;
+            deep_.push_back(a.id != b.id || depth_between(a, b) > enough ? 1 : 0);
         }
-        return deep;
     }
 
     /// How far two hits are from lying on one surface, however steep that is.
@@ -449,6 +480,7 @@ class FoldMender {
     const Viewpoint& viewpoint_;
     float spacing_, width_;
     const SampleFunction& sample_;
+    const AreaFunction& enter_;
     const FoldSettings& settings_;
     std::vector<std::uint32_t> folds_;  ///< the self-occlusions among the lines
     std::vector<std::uint32_t> parents_;
@@ -459,6 +491,7 @@ class FoldMender {
     std::vector<LooseEnd*> active_;
     std::vector<Vec2f> centres_, points_;
     std::vector<Sample> samples_;
+    std::vector<std::uint8_t> deep_;  ///< of the folds measured last: sides far apart in depth
     FoldRepairs repairs_;
     std::vector<std::uint32_t> owners_;  ///< a bridge: the fold at which it starts
 };
@@ -466,8 +499,9 @@ class FoldMender {
 }  // namespace
 
 FoldRepairs mend_folds(std::span<const Segment> lines, const Viewpoint& viewpoint, float spacing,
-                       float width, const SampleFunction& sample, const FoldSettings& settings) {
-    return FoldMender(lines, viewpoint, spacing, width, sample, settings).run();
+                       float width, const SampleFunction& sample, const AreaFunction& enter,
+                       const FoldSettings& settings) {
+    return FoldMender(lines, viewpoint, spacing, width, sample, enter, settings).run();
 }
 
 }  // namespace ink

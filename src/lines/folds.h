@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -29,13 +30,17 @@ struct FoldRepairs {
     std::vector<std::size_t> crumbs;  ///< indices of segments to drop, ascending
 };
 
+/// Says that the next samples lie in this part of the screen, or near it.
+using AreaFunction = std::function<void(Vec2f low, Vec2f high)>;
+
 /// On a mesh, and on a bumpy surface, the place where a surface hides itself breaks up: between two
 /// of its folds it is merely steep. Joins such pieces of self-occlusions along the steepest way
 /// from one to the next, and finds those that are too short and shallow to mean anything. `lines`
 /// are all of the picture's that are seen directly; `width` is that of a self-occlusion, in pixels.
+/// `enter` may be empty.
 /// The result does not depend on their order.
 FoldRepairs mend_folds(std::span<const Segment> lines, const Viewpoint& viewpoint, float spacing,
-                       float width, const SampleFunction& sample,
+                       float width, const SampleFunction& sample, const AreaFunction& enter = {},
                        const FoldSettings& settings = {});
 
 }  // namespace ink

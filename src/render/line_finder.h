@@ -44,8 +44,9 @@ class LineFinder {
         return found;
     }
 
-    /// More samples, anywhere.
+    /// More samples, anywhere; faster in the part of the screen that was entered last.
     const SampleFunction& more_samples() const { return sample_; }
+    void enter(const ScreenBox& area) { sampler_.enter(area); }
 
     /// Whether any ray of the last tile's lattice hit anything.
     bool saw_anything() const { return saw_anything_; }

@@ -29,10 +29,13 @@ RenderStats mend_lines(const Edges& edges, std::vector<std::vector<ColoredSegmen
             places.emplace_back(tile, k);
         }
     }
-    const LineFinder finder(edges, nullptr);
+    LineFinder finder(edges, nullptr);
     const float width = edges.ink.styles[edges.style_of(LineType::self_occlusion, 0)].width_px;
-    const FoldRepairs repairs = mend_folds(
-        lines, edges.viewpoint, 1.0F / static_cast<float>(edges.q), width, finder.more_samples());
+    const FoldRepairs repairs =
+        mend_folds(lines, edges.viewpoint, 1.0F / static_cast<float>(edges.q), width,
+                   finder.more_samples(), [&](Vec2f low, Vec2f high) {
+                       finder.enter({low.x, low.y, high.x, high.y});
+                   });
     stats.rays = finder.stats().rays;
     // Last first, so that the places of the others stay what they are.
     for (auto k = repairs.crumbs.rbegin(); k != repairs.crumbs.rend(); ++k) {
