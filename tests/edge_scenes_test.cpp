@@ -6,6 +6,7 @@
 #include <cmath>
 #include <map>
 #include <numbers>
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -190,6 +191,47 @@ TEST(TessellatedSphere, HasNoCreaseAtAnyZoom) {
             }
         }
     }
+}
+
+/// Hills in triangles, over which lines of sight graze.
+Object hills() {
+    constexpr std::uint32_t kSide = 60;
+    std::vector<Vec3f> vertices;
+    std::vector<Mesh::Triangle> triangles;
+    for (std::uint32_t j = 0; j <= kSide; ++j) {
+        for (std::uint32_t i = 0; i <= kSide; ++i) {
+            const double x = 2.0 * i / kSide - 1.0;
+            const double z = 2.0 * j / kSide - 1.0;
+            const double y = 0.12 * std::sin(9 * x + 3 * z) * std::cos(7 * z - 2 * x) +
+                             0.012 * std::sin(41 * x) * std::sin(37 * z);
+            vertices.push_back(to_float(Vec3d{x, y, z}));
+            if (i == kSide || j == kSide) continue;
+            const std::uint32_t a = j * (kSide + 1) + i;
+            triangles.push_back({a, a + 1, a + kSide + 2});
+            triangles.push_back({a, a + kSide + 2, a + kSide + 1});
+        }
+    }
+    Object object = mesh_object(vertices, triangles);
+    smooth_normals(std::get<Mesh>(object.shape));
+    return object;
+}
+
+TEST(MendedLines, DoNotDependOnTilesOrThreads) {
+    const Scene scene({hills()});
+    Settings settings = plan_view({240, 160}, 2.0);
+    settings.view.orthographic = 1.4;
+    settings.view.eye = Vec3d{1, 3.2, 10};
+    std::optional<std::vector<float>> first;
+    for (const int tile : {16, 64, 256}) {
+        for (const int threads : {1, 2}) {
+            settings.tile = tile;
+            settings.threads = threads;
+            const auto line = plane(draw(scene, settings), "line.A");
+            if (!first) first = line;
+            EXPECT_TRUE(line == *first) << tile << ", " << threads;
+        }
+    }
+    EXPECT_GT(lengths(scene, settings)[LineType::self_occlusion], 200.0);
 }
 
 }  // namespace

@@ -100,6 +100,17 @@ TEST(CrumbOfAFold, IsDroppedIfShortAndShallow) {
     EXPECT_GT(left(18.0, 40, 2.0F), 15U);  // long
 }
 
+TEST(CrumbOfAFold, ThatHangsOnAnotherLineIsDroppedIfItIsAStub) {
+    const Surface plate =
+        flat(2, 300.0, [](double x, double y) { return x + 0.3 * (y - kLine) < 20.3; });
+    const auto folds = [&](float width) {
+        const Mended mended = mend({{broken_fold(0.1, 18.0, {{10, 26}}), plate}}, width);
+        return std::ranges::count(mended.lines, LineType::self_occlusion, &Segment::type);
+    };
+    EXPECT_EQ(folds(4.0F), 0);
+    EXPECT_GT(folds(1.5F), 2);  // longer than two widths, though not than five
+}
+
 TEST(BrokenFold, IsMendedAlikeWhateverTheOrderOfItsPieces) {
     const World world{{broken_fold(0.1, 40.0, {{5, 13}, {20, 31}, {37, 43}})}};
     const Mended mended = mend(world, 2.0F);

@@ -407,8 +407,9 @@ class FoldMender {
         for (const LooseEnd& end : ends_) loose[root(end.fold)] = 1;
         const auto is_short = [&](std::uint32_t k) {
             const std::uint32_t group = root(k);
-            return loose[group] != 0 && attached_[group] == 0 &&
-                   lengths[group] < settings_.crumb_length * width_;
+            const float least =
+                attached_[group] != 0 ? settings_.stub_length : settings_.crumb_length;
+            return loose[group] != 0 && lengths[group] < least * width_;
         };
         const std::vector<std::uint8_t> deep = deep_groups(is_short);
         const auto is_crumb = [&](std::uint32_t k) { return is_short(k) && deep[root(k)] == 0; };

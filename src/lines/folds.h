@@ -22,6 +22,7 @@ struct FoldSettings {
     /// A line shorter than this, which meets no other and whose two sides lie less than so many
     /// widths apart, at a right angle to the surface, is a crumb.
     float crumb_length = 5.0F;
+    float stub_length = 2.0F;  ///< the same of one that ends on another line on one side
     float crumb_depth = 1.0F;
 };
 
