@@ -18,6 +18,7 @@
 #include "render/render.h"
 #include "scenes.h"
 #include "session.h"
+#include "tracers.h"
 
 namespace {
 
@@ -161,6 +162,22 @@ int run_sessions(const std::vector<std::string>& files, int side, int rounds,
     return 0;
 }
 
+int compare_tracers(const std::vector<std::string>& files, int side, int rounds) {
+    fmt::print("{:<58}{:<13}{:>11}{:>11}{:>9}{:>11}\n", "scene", "frame", "screen ms", "Embree ms",
+               "ratio", "2 threads");
+    try {
+        measure_tracers(files, side, rounds, [](const TracerRow& row) {
+            fmt::print("{:<58}{:<13}{:>11.2f}{:>11.2f}{:>9.2f}{:>9.2f} x\n", row.scene, row.what,
+                       row.screen_ms, row.embree_ms, row.ratio, row.threads_ratio);
+            std::fflush(stdout);
+        });
+    } catch (const std::exception& error) {
+        fmt::print(stderr, "{}\n", error.what());
+        return 1;
+    }
+    return 0;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -185,7 +202,11 @@ int main(int argc, char** argv) {
     std::vector<std::string> flags;
     app.add_flag("--session", sessions, "Measure the viewer with the files instead");
     app.add_option("--set", flags, "With --session: a setting, NAME=VALUE");
+    bool tracers = false;
+    app.add_flag("--tracers", tracers,
+                 "Measure instead the same frames with and without Embree for camera rays");
     CLI11_PARSE(app, argc, argv);
+    if (tracers) return compare_tracers(files, side, rounds);
     if (readers_mb > 0.0) {
         for (const ReaderRow& row : measure_readers(readers_mb)) {
             fmt::print("{:<10}{:>8.1f} MB{:>9.0f} MB/s\n", row.format, row.megabytes,

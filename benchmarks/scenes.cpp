@@ -35,6 +35,57 @@ NamedScene random_spheres(std::size_t count) {
 
 namespace {
 
+/// Numbers in [-1/2, 1/2) from the engine itself.
+class Random {
+  public:
+    float number() { return static_cast<float>(engine_()) * 0x1p-32F - 0.5F; }
+    Vec3f point() {
+        const float x = number();
+        const float y = number();
+        return {x, y, number()};
+    }
+
+  private:
+    std::mt19937 engine_{2};
+};
+
+Object random_glyphs(const UnitShape& shape, std::size_t count, Random& random) {
+    const auto size = static_cast<float>(0.4 / std::cbrt(static_cast<double>(count)));
+    Glyphs glyphs{shape, {}, {}, {}};
+    for (std::size_t i = 0; i < count; ++i) {
+        Placement place;
+        for (Vec3f* axis : {&place.x_axis, &place.y_axis, &place.z_axis}) {
+            *axis = (*axis + random.point() * 0.6F) * size;
+        }
+        place.origin = random.point();
+        glyphs.placements.push_back(place);
+    }
+    Object object;
+    object.name = "glyphs";
+    object.kind = ObjectKind::particles;
+    object.shape = std::move(glyphs);
+    return object;
+}
+
+Object random_hexahedra(std::size_t count, Random& random) {
+    const auto size = static_cast<float>(0.8 / std::cbrt(static_cast<double>(count)));
+    Hexahedra solids;
+    for (std::size_t i = 0; i < count; ++i) {
+        const Vec3f at = random.point();
+        Hexahedra::Corners corners;
+        for (std::size_t k = 0; k < corners.size(); ++k) {
+            const bool right = k % 4 == 1 || k % 4 == 2;
+            const Vec3f corner{right ? 1.0F : 0.0F, k % 4 >= 2 ? 1.0F : 0.0F, k >= 4 ? 1.0F : 0.0F};
+            corners[k] = at + (corner + random.point() * 0.3F) * size;
+        }
+        solids.corners.push_back(corners);
+    }
+    Object object;
+    object.name = "hexahedra";
+    object.shape = std::move(solids);
+    return object;
+}
+
 Mesh icosahedron() {
     const float g = std::numbers::phi_v<float>;
     Mesh mesh;
@@ -66,6 +117,31 @@ void subdivide(Mesh& mesh) {
 }
 
 }  // namespace
+
+NamedScene random_boxes(std::size_t count) {
+    Random random;
+    return {fmt::format("{} random boxes", count),
+            {random_glyphs({GlyphKind::box}, count, random)}};
+}
+
+NamedScene mixed_shapes() {
+    constexpr std::size_t kEach = 2000;
+    Random random;
+    std::vector<Object> objects = random_spheres(kEach).objects;
+    for (Sphere& sphere : std::get<Spheres>(objects[0].shape).spheres) {
+        sphere.centre = sphere.centre - Vec3f{0.5F, 0.5F, 0.5F};
+    }
+    using enum GlyphKind;
+    for (const UnitShape& shape : {UnitShape{box}, UnitShape{ellipsoid}, UnitShape{frustum},
+                                   UnitShape{.kind = frustum, .a = 0.0}, UnitShape{disc}}) {
+        objects.push_back(random_glyphs(shape, kEach, random));
+    }
+    objects.push_back(random_hexahedra(kEach, random));
+    Object mesh = bumpy_sphere(4).objects[0];
+    for (Vec3f& vertex : std::get<Mesh>(mesh.shape).vertices) vertex = vertex * 0.3F;
+    objects.push_back(std::move(mesh));
+    return {"mixed shapes", std::move(objects)};
+}
 
 NamedScene bumpy_sphere(int levels) {
     Mesh mesh = icosahedron();

@@ -36,6 +36,7 @@ class Seen {
     }
 
     const Camera& camera() const { return camera_; }
+    const Scene& scene() const { return scene_; }
 
     /// Pixel centres, or points at random, sixteen a packet.
     std::vector<PointPacket> pixels() const {
@@ -88,8 +89,12 @@ class Seen {
         return hits;
     }
     std::vector<HitPacket> trace_brute_force(const std::vector<PointPacket>& points) const {
+        return trace(*oracle_, points, Coherence::incoherent);
+    }
+    std::vector<HitPacket> trace(const Tracer& tracer, const std::vector<PointPacket>& points,
+                                 Coherence coherence) const {
         std::vector<HitPacket> hits(points.size());
-        oracle_->intersect(rays(points), hits, Coherence::incoherent);
+        tracer.intersect(rays(points), hits, coherence);
         return hits;
     }
     ScreenBox whole() const {
@@ -506,10 +511,9 @@ TEST(ScreenTracer, GivesRastersTheHitsOfTheirPoints) {
 
 // ---- Coincident surfaces ----
 
-/// Every hit belongs to the lowest object, and there to one of its first `primitives`.
-void expect_first_wins(const Seen& seen, std::uint32_t primitives) {
+void expect_first_wins(const std::vector<HitPacket>& packets, std::uint32_t primitives) {
     int hits = 0;
-    for (const HitPacket& packet : seen.trace(seen.random_points(7, 2000))) {
+    for (const HitPacket& packet : packets) {
         for (int i = 0; i < kLanes; ++i) {
             if (packet.object[i] == kNoObject) continue;
             ++hits;
@@ -520,6 +524,17 @@ void expect_first_wins(const Seen& seen, std::uint32_t primitives) {
     EXPECT_GT(hits, 1000);
 }
 
+/// Every hit belongs to the lowest object, and there to one of its first `primitives`; by Embree,
+/// too.
+void expect_first_wins(const Seen& seen, std::uint32_t primitives) {
+    const auto points = seen.random_points(7, 2000);
+    expect_first_wins(seen.trace(points), primitives);
+    for (const PacketWidth width : {PacketWidth::one, PacketWidth::eight, PacketWidth::sixteen}) {
+        const auto embree = make_embree_tracer(seen.scene(), width);
+        expect_first_wins(seen.trace(*embree, points, Coherence::coherent), primitives);
+    }
+}
+
 ViewSettings oblique_view() {
     ViewSettings view;
     view.eye = Vec3d{3.1, 2.3, 4.7};
@@ -527,7 +542,7 @@ ViewSettings oblique_view() {
     return view;
 }
 
-TEST(ScreenTracer, PrefersTheFirstOfTrianglesThatAreThereTwice) {
+TEST(Coincidence, PrefersTheFirstOfTrianglesThatAreThereTwice) {
     const std::vector<Vec3f> corners{
         {-1, -0.9F, 0.1F}, {1, -1, 0.3F}, {0.9F, 1, -0.2F}, {-1, 1.1F, 0.17F}};
     const std::vector<Mesh::Triangle> once{{0, 1, 2}, {0, 2, 3}};
@@ -540,7 +555,7 @@ TEST(ScreenTracer, PrefersTheFirstOfTrianglesThatAreThereTwice) {
     }
 }
 
-TEST(ScreenTracer, PrefersTheFirstOfObjectsThatShareAFace) {
+TEST(Coincidence, PrefersTheFirstOfObjectsThatShareAFace) {
     const auto square = [](const std::vector<Mesh::Triangle>& triangles) {
         return mesh_object({{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}}, triangles);
     };
@@ -557,7 +572,7 @@ TEST(ScreenTracer, PrefersTheFirstOfObjectsThatShareAFace) {
     expect_first_wins(Seen(std::move(stack), oblique_view(), {512, 512}), 2);
 }
 
-TEST(ScreenTracer, PrefersTheFirstOfBoxesThatFillTheSamePlace) {
+TEST(Coincidence, PrefersTheFirstOfBoxesThatFillTheSamePlace) {
     Object object;
     object.kind = ObjectKind::shape;
     Placement turned;

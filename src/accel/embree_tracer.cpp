@@ -54,9 +54,31 @@ using QueryContext = RTCIntersectContext;
 constexpr RTCSceneFlags kFilterWithQuery = RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION;
 #endif
 
+/// Of surfaces that coincide, the one of the lower object, then of the lower primitive is seen, as
+/// in accel/screen_kernels.h. So what lies within kTouching behind the nearest hit still counts.
+constexpr float kTouching = 5e-7F;
+
+/// The nearest hits so far, by ray ID.
+struct NearestHits {
+    Lanes<float> t;
+    Lanes<std::uint64_t> rank;
+
+    /// Whether a hit takes the place of what there is.
+    bool take(unsigned ray, float new_t, unsigned object, unsigned primitive) {
+        const auto lane = static_cast<int>(ray);
+        const std::uint64_t new_rank = static_cast<std::uint64_t>(object) << 32U | primitive;
+        const float gap = new_t - t[lane];
+        if (!(gap < -kTouching || (gap <= kTouching && new_rank < rank[lane]))) return false;
+        t[lane] = new_t;
+        rank[lane] = new_rank;
+        return true;
+    }
+};
+
 /// What Embree hands back to the functions that it calls on the way.
 struct Query : QueryContext {
     SurfaceHits* hits = nullptr;  ///< if every crossing is wanted; of the ray whose ID is the index
+    NearestHits* nearest = nullptr;  ///< if coincident surfaces are told apart
 };
 
 /// Embree's filter: writes a crossing down and goes on as if there were none.
@@ -74,6 +96,22 @@ void record(const RTCFilterFunctionNArguments* args) {
              RTCHitN_v(args->hit, n, i),
              RTCHitN_primID(args->hit, n, i),
              RTCHitN_geomID(args->hit, n, i)});
+    }
+}
+
+/// Embree's filter: keeps the hit that is to be seen, and looks for others that coincide with it.
+void prefer_first(const RTCFilterFunctionNArguments* args) {
+    NearestHits& nearest = *static_cast<Query*>(args->context)->nearest;
+    for (unsigned i = 0; i < args->N; ++i) {
+        if (args->valid[i] == 0) continue;
+        const unsigned n = args->N;
+        float& t = RTCRayN_tfar(args->ray, n, i);
+        if (nearest.take(RTCRayN_id(args->ray, n, i), t, RTCHitN_geomID(args->hit, n, i),
+                         RTCHitN_primID(args->hit, n, i))) {
+            t += kTouching;
+        } else {
+            args->valid[i] = 0;
+        }
     }
 }
 
@@ -117,6 +155,7 @@ struct UserShape {
         const auto& shape = *static_cast<const Shape*>(args->geometryUserPtr);
         const Meet meet(shape, args->primID);
         SurfaceHits* const all = static_cast<Query*>(args->context)->hits;
+        NearestHits* const nearest = static_cast<Query*>(args->context)->nearest;
         const unsigned width = args->N;
         RTCRayN* rays = RTCRayHitN_RayN(args->rayhit, width);
         RTCHitN* hits = RTCRayHitN_HitN(args->rayhit, width);
@@ -133,7 +172,14 @@ struct UserShape {
             float& far = RTCRayN_tfar(rays, width, i);
             const auto hit = meet(ray, RTCRayN_tnear(rays, width, i), far);
             if (!hit) continue;
-            far = static_cast<float>(hit->t);
+            const auto t = static_cast<float>(hit->t);
+            if (nearest == nullptr) {
+                far = t;
+            } else if (nearest->take(RTCRayN_id(rays, width, i), t, args->geomID, args->primID)) {
+                far = t + kTouching;
+            } else {
+                continue;
+            }
             const Vec3f normal = to_float(normalize(hit->normal));
             RTCHitN_Ng_x(hits, width, i) = normal.x;
             RTCHitN_Ng_y(hits, width, i) = normal.y;
@@ -270,12 +316,13 @@ void load(const RayPacket& rays, int first, RayHit& out) {
     }
 }
 
+/// `t`: of the hits, from lane `first`.
 template <class RayHit, int Width>
-void store(const RayHit& in, int first, HitPacket& hits) {
+void store(const RayHit& in, const float* t, int first, HitPacket& hits) {
     const auto copy = [&](auto& to, const auto* from) {
         std::memcpy(to.data() + first, from, sizeof(*from) * Width);
     };
-    copy(hits.t, in.ray.tfar);
+    copy(hits.t, t);
     copy(hits.normal_x, in.hit.Ng_x);
     copy(hits.normal_y, in.hit.Ng_y);
     copy(hits.normal_z, in.hit.Ng_z);
@@ -296,7 +343,10 @@ class EmbreeTracer final : public Tracer {
         // what lies behind as a jump in depth.
         rtcSetSceneFlags(scene_.get(), RTC_SCENE_FLAG_ROBUST | kFilterWithQuery);
         for (std::uint32_t i = 0; i < scene.objects().size(); ++i) {
-            if (!wanted || wanted(scene.objects()[i])) attach(scene.objects()[i], i);
+            const Object& object = scene.objects()[i];
+            if (wanted && !wanted(object)) continue;
+            attach(object, i);
+            any_flat_ |= !std::holds_alternative<Spheres>(object.shape);
         }
         rtcCommitScene(scene_.get());
         check(device_.get());
@@ -357,25 +407,30 @@ class EmbreeTracer final : public Tracer {
     /// Made of `query`, which must outlive it: the arguments of Embree 4, the context of Embree 3.
     /// `hits`: null unless every crossing is wanted.
 #if RTC_VERSION_MAJOR >= 4
-    static RTCIntersectArguments arguments(Coherence coherence, Query& query, SurfaceHits* hits) {
+    static RTCIntersectArguments arguments(Coherence coherence, Query& query, SurfaceHits* hits,
+                                           NearestHits* nearest) {
         rtcInitRayQueryContext(&query);
         RTCIntersectArguments args;
         rtcInitIntersectArguments(&args);
         if (coherence == Coherence::coherent) args.flags = RTC_RAY_QUERY_FLAG_COHERENT;
         args.context = &query;
         query.hits = hits;
-        if (hits == nullptr) return args;
-        args.filter = record;
+        query.nearest = nearest;
+        if (hits == nullptr && nearest == nullptr) return args;
+        args.filter = hits != nullptr ? record : prefer_first;
         args.flags =
             static_cast<RTCRayQueryFlags>(args.flags | RTC_RAY_QUERY_FLAG_INVOKE_ARGUMENT_FILTER);
         return args;
     }
 #else
-    static QueryContext& arguments(Coherence coherence, Query& query, SurfaceHits* hits) {
+    static QueryContext& arguments(Coherence coherence, Query& query, SurfaceHits* hits,
+                                   NearestHits* nearest) {
         rtcInitIntersectContext(&query);
         if (coherence == Coherence::coherent) query.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
         query.hits = hits;
+        query.nearest = nearest;
         if (hits != nullptr) query.filter = record;
+        if (nearest != nullptr) query.filter = prefer_first;
         return query;
     }
 #endif
@@ -422,10 +477,13 @@ class EmbreeTracer final : public Tracer {
     void trace(std::span<const RayPacket> rays, std::span<HitPacket> hits, Coherence coherence,
                SurfaceHits* all, const Kernel& kernel) const {
         Query query;
-        auto&& args = arguments(coherence, query, all);
+        NearestHits nearest;
+        const bool told_apart = tells_apart(coherence, all);
+        auto&& args = arguments(coherence, query, all, told_apart ? &nearest : nullptr);
         alignas(64) RayHit packet{};  // Embree leaves the hit of a ray that misses as it was
         prepare<RayHit, Width>(packet);
         for (std::size_t k = 0; k < rays.size(); ++k) {
+            nearest.t.fill(kInfinity);
             for (int first = 0; first < kLanes; first += Width) {
                 load<RayHit, Width>(rays[k], first, packet);
 #if RTC_VERSION_MAJOR >= 4
@@ -433,7 +491,9 @@ class EmbreeTracer final : public Tracer {
 #else
                 kernel(rays[k].active.data() + first, scene_.get(), &args, &packet);
 #endif
-                store<RayHit, Width>(packet, first, hits[k]);
+                store<RayHit, Width>(packet,
+                                     told_apart ? nearest.t.data() + first : packet.ray.tfar, first,
+                                     hits[k]);
             }
         }
     }
@@ -441,8 +501,11 @@ class EmbreeTracer final : public Tracer {
     void trace_single(std::span<const RayPacket> rays, std::span<HitPacket> hits,
                       Coherence coherence, SurfaceHits* all) const {
         Query query;
-        auto&& args = arguments(coherence, query, all);
+        NearestHits nearest;
+        const bool told_apart = tells_apart(coherence, all);
+        auto&& args = arguments(coherence, query, all, told_apart ? &nearest : nullptr);
         for (std::size_t k = 0; k < rays.size(); ++k) {
+            nearest.t.fill(kInfinity);
             for (int lane = 0; lane < kLanes; ++lane) {
                 RTCRayHit single{};
                 single.ray.org_x = rays[k].origin_x[lane];
@@ -463,7 +526,7 @@ class EmbreeTracer final : public Tracer {
                     rtcIntersect1(scene_.get(), &args, &single);
 #endif
                 }
-                hits[k].t[lane] = single.ray.tfar;
+                hits[k].t[lane] = told_apart ? nearest.t[lane] : single.ray.tfar;
                 hits[k].normal_x[lane] = single.hit.Ng_x;
                 hits[k].normal_y[lane] = single.hit.Ng_y;
                 hits[k].normal_z[lane] = single.hit.Ng_z;
@@ -475,8 +538,14 @@ class EmbreeTracer final : public Tracer {
         }
     }
 
+    /// Where it matters which of two surfaces is seen, and there may be some that coincide.
+    bool tells_apart(Coherence coherence, const SurfaceHits* all) const {
+        return any_flat_ && all == nullptr && coherence == Coherence::coherent;
+    }
+
     DeviceHandle device_;
     SceneHandle scene_;
+    bool any_flat_ = false;  ///< objects other than spheres
     PacketWidth width_ = PacketWidth::one;
 };
 
