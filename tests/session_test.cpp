@@ -197,6 +197,13 @@ TEST(Pace, HoldsTheFrameRateHoweverLongAFrameTakesWithoutLines) {
     EXPECT_LE(pace.scale(), 0.375);
 }
 
+TEST(Pace, TakesNoFewerRaysWhereThatIsNoFaster) {
+    Pace pace;
+    pace.plain_took(10.0);
+    for (int k = 0; k < 60; ++k) pace.frame_took(pace.scale(), 35.0);  // whatever it draws
+    EXPECT_EQ(pace.scale(), 1.0);
+}
+
 TEST(Pace, StaysWithAScaleWhileFramesCostTheSame) {
     for (const double full_ms : {20.0, 50.0, 90.0, 300.0}) {
         Pace pace;

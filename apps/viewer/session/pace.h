@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+
 namespace inktrace::viewer {
 
 /// Chooses how many rays the pictures of a moving camera take, as a share of those along a pixel's
@@ -8,7 +10,7 @@ namespace inktrace::viewer {
 class Pace {
   public:
     double scale() const;
-    /// Learns what a frame takes without lines, with one ray a pixel.
+    /// Learns what a frame of another scene takes without lines, with one ray a pixel.
     void plain_took(double ms);
     /// Learns from a frame drawn with a share of the rays.
     void frame_took(double scale, double ms);
@@ -18,9 +20,13 @@ class Pace {
 
   private:
     static constexpr double kLongest = 40.0;  ///< ms: 25 frames a second
+    static constexpr int kSteps = 5;
+
+    double expected_ms(int step) const;
+
     double target_ms_ = kLongest;
-    int step_ = 0;  ///< index into the scales
-    bool known_ = false;
+    int step_ = 0;                          ///< index into the scales
+    std::array<double, kSteps> took_ms_{};  ///< a frame, of late; 0 where that is not known
 };
 
 }  // namespace inktrace::viewer
