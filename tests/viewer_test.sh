@@ -26,16 +26,24 @@ fail() {
     exit 1
 }
 
+# Waits until a condition holds, as long as a slow machine may need: until_ MESSAGE COMMAND...
+until_() {
+    message=$1
+    shift
+    tries=0
+    until "$@"; do
+        tries=$((tries + 1))
+        [ $tries -lt 600 ] || fail "$message"
+        if [ -n "$viewer" ] && ! kill -0 "$viewer" 2> /dev/null; then fail "$message: it has ended"; fi
+        sleep 0.1
+    done
+}
+
 # Xvfb picks a free display and tells its number.
 Xvfb -displayfd 3 -screen 0 1280x1000x24 +extension GLX -nolisten tcp \
     3> "$folder/display" 2> /dev/null &
 server=$!
-tries=0
-until [ -s "$folder/display" ]; do
-    tries=$((tries + 1))
-    [ $tries -lt 100 ] || fail "Xvfb does not start"
-    sleep 0.1
-done
+until_ "Xvfb does not start" [ -s "$folder/display" ]
 export DISPLAY=":$(cat "$folder/display")"
 export LIBGL_ALWAYS_SOFTWARE=1
 cd "$folder"
@@ -51,29 +59,32 @@ PDB
 shot() { import -window root "$1"; }
 # compare says 1.2e+06 where there are many.
 pixels_apart() { printf '%.0f' "$(compare -metric AE "$1" "$2" null: 2>&1 || true)"; }
-# Waits until the window shows one picture for some time.
-settle() {
+colors() { convert "$1" -crop "$2" -unique-colors -format %w info:; }
+
+shows_colors() {  # in a part of the window
+    shot now.png
+    [ "$(colors now.png "$1")" -gt "$2" ]
+}
+differs() {  # from an earlier shot
+    shot now.png
+    [ "$(pixels_apart "$1" now.png)" -gt 5000 ]
+}
+rests() {  # for half a second
     shot before.png
-    tries=0
-    while :; do
-        sleep 0.4
-        shot after.png
-        [ "$(pixels_apart before.png after.png)" != 0 ] || break
-        mv after.png before.png
-        tries=$((tries + 1))
-        [ $tries -lt 100 ] || fail "the window does not come to rest"
-    done
-    mv after.png "$1"
+    sleep 0.5
+    shot now.png
+    [ "$(pixels_apart before.png now.png)" = 0 ]
 }
-wait_for_window() {
-    tries=0
-    until xdotool search --name "$1" > window 2> /dev/null && [ -s window ]; do
-        tries=$((tries + 1))
-        [ $tries -lt 300 ] || fail "no window '$1'"
-        kill -0 "$viewer" 2> /dev/null || fail "the viewer has ended"
-        sleep 0.1
-    done
+# What comes of the last events: waits until the window differs from a shot, and rests.
+changed() {  # BEFORE AFTER MESSAGE
+    until_ "$3" differs "$1"
+    until_ "the window does not come to rest" rests
+    mv now.png "$2"
 }
+has_window() { xdotool search --name "$1" > window 2> /dev/null && [ -s window ]; }
+has_size() { [ "$(xdotool getwindowgeometry --shell "$(head -1 window)" | grep -c -e "WIDTH=$1\$" -e "HEIGHT=$2\$")" = 2 ]; }
+is_visible() { xdotool search --onlyvisible --name molecule.pdb > /dev/null 2>&1; }
+is_hidden() { ! is_visible; }
 start() {
     "$inktrace" view "$@" > out 2> log &
     viewer=$!
@@ -87,73 +98,85 @@ quit() {
 }
 
 start molecule.pdb
-wait_for_window molecule.pdb
+until_ "no window" has_window molecule.pdb
 xdotool windowfocus "$(head -1 window)" 2> /dev/null || true
-settle opened.png
-[ "$(convert opened.png -crop 900x900+0+0 -unique-colors -format %w info:)" -gt 50 ] ||
-    fail "the window shows no molecule"
+until_ "the window shows no molecule" shows_colors 900x900+0+0 50
+until_ "the window does not come to rest" rests
+mv now.png opened.png
 
 xdotool mousemove 450 450 mousedown 1 mousemove 500 460 mousemove 560 480 mouseup 1
-settle turned.png
-[ "$(pixels_apart opened.png turned.png)" -gt 5000 ] || fail "a drag does not turn the molecule"
+changed opened.png turned.png "a drag does not turn the molecule"
 xdotool mousemove 300 450 click 4 click 4
-settle zoomed.png
-[ "$(pixels_apart turned.png zoomed.png)" -gt 5000 ] || fail "the wheel does not zoom"
+changed turned.png zoomed.png "the wheel does not zoom"
 xdotool key o key bracketright key shift+Left
-settle keys.png
-[ "$(pixels_apart zoomed.png keys.png)" -gt 5000 ] || fail "keys do not move the camera"
+changed zoomed.png keys.png "keys do not move the camera"
 xdotool key question
-settle help.png
-[ "$(pixels_apart keys.png help.png)" -gt 5000 ] || fail "? does not show the keys"
+changed keys.png help.png "? does not show the keys"
 xdotool key Escape
-settle keys.png
+changed help.png keys.png "Esc does not close the help"
 
 # The command line in the clipboard draws what the window shows.
-xdotool key ctrl+c
-tries=0
-until "$read_clipboard" > command && [ -s command ]; do
-    tries=$((tries + 1))
-    [ $tries -lt 50 ] || fail "the clipboard cannot be read"
-    sleep 0.2
-done
+copied() { xdotool key ctrl+c && "$read_clipboard" > command && [ -s command ]; }
+until_ "the clipboard cannot be read" copied
 grep -q '^inktrace render molecule.pdb -o picture.png ' command || fail "copied: $(cat command)"
 sh -c "$(sed "s|^inktrace|'$inktrace'|" command) --quiet" || fail "the command: $(cat command)"
 size=$(convert picture.png -format %wx%h info:)
-convert keys.png -crop "$size+0+0" +repage shown.png
-[ "$(pixels_apart picture.png shown.png)" = 0 ] || fail "the command draws another picture"
+shows_picture() {
+    shot now.png
+    convert now.png -crop "$size+0+0" +repage shown.png
+    [ "$(pixels_apart picture.png shown.png)" = 0 ]
+}
+until_ "the command draws another picture" shows_picture
+cp picture.png "$folder/commanded.png"
 
 # So does what the export dialog writes, whose name is there already.
+shot keys.png
+rm picture.png
 xdotool key ctrl+e
-settle dialog.png
-mv picture.png commanded.png
+changed keys.png dialog.png "Ctrl+E shows no dialog"
 xdotool key Return
-tries=0
-until [ -s picture.png ]; do
-    tries=$((tries + 1))
-    [ $tries -lt 100 ] || fail "the dialog writes nothing"
-    sleep 0.1
-done
+until_ "the dialog writes nothing" [ -s picture.png ]
 cmp picture.png commanded.png || fail "the exported file is another one"
+# It may still have been closing; the next events are for the window.
+until_ "the dialog stays" shows_picture
+
+# A click tells what is under the pointer.
+shot keys.png
+xdotool mousemove 450 450 click 1
+changed keys.png picked.png "a click picks nothing"
 
 # Sizes that no picture has, a file that comes, goes and breaks.
-xdotool windowsize "$(head -1 window)" 5 5
-sleep 0.3
-xdotool windowunmap "$(head -1 window)"
-sleep 0.3
-xdotool windowmap "$(head -1 window)"
-xdotool windowsize "$(head -1 window)" 900 700
-sleep 0.3
+id=$(head -1 window)
+xdotool windowsize "$id" 5 5
+until_ "the window does not shrink" has_size 5 5
+xdotool windowunmap "$id"
+until_ "the window stays" is_hidden
+xdotool windowmap "$id"
+until_ "the window does not come back" is_visible
+xdotool windowsize "$id" 900 700
+until_ "the window does not grow" has_size 900 700
+until_ "the picture does not come back" shows_colors 500x600+0+0 50
+until_ "the window does not come to rest" rests
+says() {  # in the bar below the picture, in red
+    shot now.png
+    [ "$(convert now.png -crop 500x28+0+672 -fuzz 20% -fill white +opaque '#b81414' \
+        -fill black -opaque '#b81414' -format '%[fx:(1-mean)*w*h>20]' info:)" = 1 ]
+}
 echo nonsense > molecule.pdb
-sleep 0.5
+until_ "no word about a file that makes no sense" says
 rm molecule.pdb
-settle gone.png
-[ "$(convert gone.png -crop 500x600+0+0 -unique-colors -format %w info:)" -gt 50 ] ||
-    fail "the picture is gone with its file"
+until_ "the window does not come to rest" rests
+shows_colors 500x600+0+0 50 || fail "the picture is gone with its file"
 quit "closing"
 
 start missing.pdb
-wait_for_window missing.pdb
-sleep 0.5
+until_ "no window" has_window missing.pdb
+missing() {
+    shot now.png
+    [ "$(convert now.png -crop 900x28+0+932 -fuzz 20% -fill white +opaque '#b81414' \
+        -fill black -opaque '#b81414' -format '%[fx:(1-mean)*w*h>20]' info:)" = 1 ]
+}
+until_ "no word about a missing file" missing
 quit "a missing file"
 
 if DISPLAY= WAYLAND_DISPLAY= "$inktrace" view > out 2> log; then fail "a window without a display"; fi
@@ -163,7 +186,7 @@ grep -q 'line-width' log || fail "no word about the wrong flag"
 
 # A display that dies takes the viewer along, with a message and no more.
 start
-wait_for_window Inktrace
+until_ "no window" has_window Inktrace
 kill "$server"
 status=0
 wait "$viewer" || status=$?

@@ -105,7 +105,8 @@ void draw_performance(Interface& interface) {
     const RenderStats& stats = painting.picture->stats();
     ImGui::SetNextWindowPos({interface.px(10), interface.px(10)});
     ImGui::SetNextWindowBgAlpha(0.85F);
-    ImGui::Begin("##performance", nullptr, kBar | ImGuiWindowFlags_AlwaysAutoResize);
+    ImGui::Begin("##performance", nullptr,
+                 kBar | ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoInputs);
     const auto row = [&](const char* name, const std::string& value) {
         ImGui::TextDisabled("%s", name);
         ImGui::SameLine(interface.px(76));
@@ -113,7 +114,12 @@ void draw_performance(Interface& interface) {
     };
     row("picture", fmt::format("{} x {}, {}", painting.picture->width(), painting.picture->height(),
                                painting.exact ? "in full" : "moving"));
-    row("frame", fmt::format("{:.1f} ms, {} threads", painting.frame_ms, stats.threads));
+    if (painting.scale < 1.0) {
+        row("", fmt::format("a ray to {0:.2g} x {0:.2g} pixels", 1.0 / painting.scale));
+    }
+    row("frame", fmt::format("{:.1f} ms, {:.0f} a second", painting.frame_ms,
+                             1e3 / std::max(painting.frame_ms, 1e-3)));
+    row("threads", fmt::format("{}", stats.threads));
     row("latency", fmt::format("{:.1f} ms", painting.latency_ms));
     row("rays",
         fmt::format("{:.2f} M, {:.1f} M/s", static_cast<double>(stats.rays) * 1e-6,

@@ -125,10 +125,12 @@ void draw_export(Interface& interface) {
     ImGui::EndPopup();
 }
 
+ImVec4 key_color() { return ImGui::GetStyleColorVec4(ImGuiCol_CheckMark); }
+
 void draw_help(Interface& interface) {
     if (!begin_dialog(interface, "Mouse and keyboard", interface.help, 640)) return;
     const auto row = [&](const char* keys, const char* what) {
-        ImGui::TextUnformatted(keys);
+        ImGui::TextColored(key_color(), "%s", keys);
         ImGui::SameLine(interface.px(150));
         ImGui::TextUnformatted(what);
     };
@@ -141,7 +143,7 @@ void draw_help(Interface& interface) {
         for (const Shortcut& shortcut : shortcuts()) {
             if (shortcut.what == nullptr) continue;
             ImGui::TableNextColumn();
-            ImGui::TextUnformatted(shortcut.shown_as);
+            ImGui::TextColored(key_color(), "%s", shortcut.shown_as);
             ImGui::TableNextColumn();
             ImGui::TextUnformatted(shortcut.what);
         }

@@ -11,6 +11,10 @@ namespace {
 
 Vec3d to_vector(const std::array<double, 3>& v) { return {v[0], v[1], v[2]}; }
 
+bool inside(double x, double y, ink::Size picture) {
+    return x >= 0 && y >= 0 && x < picture.width && y < picture.height;
+}
+
 }  // namespace
 
 void Hand::take(const Input& input, ink::Size picture) {
@@ -25,9 +29,8 @@ void Hand::take(const Input& input, ink::Size picture) {
 }
 
 void Hand::press(const Input& input, ink::Size picture) {
-    const bool inside =
-        input.x >= 0 && input.y >= 0 && input.x < picture.width && input.y < picture.height;
-    if (!inside || interface_.window.interface_has_pointer() || drag_ != Drag::none) return;
+    if (!inside(input.x, input.y, picture) || drag_ != Drag::none) return;
+    if (interface_.window.interface_has_pointer()) return;
     drag_ = input.button != 0 || input.shift ? Drag::pan : input.ctrl ? Drag::roll : Drag::turn;
     moved_ = false;
     start_x_ = last_x_ = input.x;
@@ -85,10 +88,7 @@ void Hand::move(const Input& input, ink::Size picture) {
 }
 
 void Hand::scroll(const Input& input, ink::Size picture) {
-    if (interface_.window.interface_has_pointer() || input.x >= picture.width ||
-        input.y >= picture.height) {
-        return;
-    }
+    if (interface_.window.interface_has_pointer() || !inside(input.x, input.y, picture)) return;
     Session& session = interface_.session;
     const CameraPose pose = session.camera();
     if (!zoom_point_) {
@@ -108,8 +108,11 @@ bool Hand::look() {
     look_at_.reset();
     if (drag_ != Drag::none || interface_.window.interface_has_pointer()) return false;
     const bool before = interface_.under_pointer.has_value();
-    interface_.attempt(
-        [&] { interface_.under_pointer = interface_.session.pick(last_x_, last_y_); });
+    const bool over_picture = inside(last_x_, last_y_, interface_.session.size());
+    interface_.attempt([&] {
+        interface_.under_pointer =
+            over_picture ? interface_.session.pick(last_x_, last_y_) : std::nullopt;
+    });
     return before || interface_.under_pointer;
 }
 

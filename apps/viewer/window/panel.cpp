@@ -43,10 +43,21 @@ void buttons(Interface& interface) {
     if (button("Help", true, "?: mouse and keyboard")) interface.help = true;
 }
 
+/// "1 residue", "46 residues".
+std::string counted(std::size_t count, const std::string& things) {
+    std::string name = things;
+    if (count == 1 && name.ends_with("ies")) {
+        name.replace(name.size() - 3, 3, "y");
+    } else if (count == 1 && name.ends_with("s")) {
+        name.pop_back();
+    }
+    return fmt::format("{} {}", count, name);
+}
+
 void describe_files(Interface& interface) {
     for (const FileInfo& info : interface.session.infos()) {
         std::string text = fmt::format("{}: {}", info.path.filename().string(), info.format);
-        for (const auto& [name, count] : info.counts) text += fmt::format(", {} {}", count, name);
+        for (const auto& [name, count] : info.counts) text += ", " + counted(count, name);
         ImGui::TextWrapped("%s", text.c_str());
     }
     if (interface.session.infos().empty()) ImGui::TextDisabled("No file");
@@ -58,7 +69,7 @@ void describe_picked(Interface& interface) {
     const Hit& hit = *interface.picked;
     const auto row = [&](const std::string& name, const std::string& value) {
         ImGui::TextDisabled("%s", name.c_str());
-        ImGui::SameLine(interface.px(118));
+        ImGui::SameLine(interface.px(kValuePoints));
         ImGui::TextWrapped("%s", value.c_str());
     };
     row(hit.kind, fmt::format("{} of {}", hit.primitive + 1, hit.object));
@@ -94,7 +105,7 @@ void line_type_row(Interface& interface, const std::string& type, LineRules& rul
     if (drawn) {
         const float reset = ImGui::GetFrameHeight();
         const float color = ImGui::GetFrameHeight();
-        ImGui::SameLine(interface.px(132));
+        ImGui::SameLine(interface.px(kValuePoints));
         std::string width = rules.get(type, "width").value_or(settings.get("line-width"));
         const float slider = ImGui::GetContentRegionAvail().x - reset - color - 2 * interface.px(6);
         if (length_slider("##width", width, 0.25, 20.0, slider)) {
@@ -152,12 +163,17 @@ bool counts(const Interface& interface, const SettingInfo& info) {
     return ridges || !info.help.starts_with("Apparent ridges:");
 }
 
+/// Where the panel shows a setting: colours with the shading, whatever reads them.
+std::string topic_of(const SettingInfo& info) {
+    return info.name == "color-by" ? "Shading" : info.topic;
+}
+
 void topic(Interface& interface, const std::string& name) {
     const bool open = name == "Lines" || name == "Shading" || name == "Look";
     if (!ImGui::CollapsingHeader(name.c_str(), open ? ImGuiTreeNodeFlags_DefaultOpen : 0)) return;
     if (name == "Lines") line_types(interface);
     for (const SettingInfo& info : all_settings()) {
-        if (info.topic != name || has_a_place_of_its_own(info.name)) continue;
+        if (topic_of(info) != name || has_a_place_of_its_own(info.name)) continue;
         if (counts(interface, info)) setting_row(interface, info);
     }
     ImGui::Spacing();

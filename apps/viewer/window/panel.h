@@ -8,6 +8,6 @@ namespace inktrace::viewer {
 /// `left` and `width` are pixels.
 void draw_panel(Interface& interface, float left, float width, float height);
 
-inline constexpr float kPanelPoints = 330.0F;
+inline constexpr float kPanelPoints = 340.0F;
 
 }  // namespace inktrace::viewer

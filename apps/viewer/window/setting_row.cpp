@@ -170,7 +170,7 @@ void setting_row(Interface& interface, const SettingInfo& info) {
     ImGui::AlignTextToFramePadding();
     ImGui::TextUnformatted(info.name.c_str());
     help_tooltip(info);
-    ImGui::SameLine(interface.px(118));
+    ImGui::SameLine(interface.px(kValuePoints));
     const float reset = ImGui::GetFrameHeight();
     ImGui::PushItemWidth(ImGui::GetContentRegionAvail().x - reset - interface.px(4));
     const float left = ImGui::GetCursorPosX();

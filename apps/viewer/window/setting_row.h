@@ -6,6 +6,9 @@
 
 namespace inktrace::viewer {
 
+/// Where values begin, from the panel's left.
+inline constexpr float kValuePoints = 132.0F;
+
 /// One row of the panel: the name of a setting, and what its value can be chosen or typed with.
 void setting_row(Interface& interface, const SettingInfo& info);
 

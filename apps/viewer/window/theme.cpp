@@ -43,6 +43,7 @@ void set_theme(float scale) {
     style.WindowPadding = {10, 8};
     style.IndentSpacing = 10.0F;
     style.ScrollbarSize = 12.0F;
+    style.GrabMinSize = 8.0F;
     const auto set = [&](ImGuiCol which, float r, float g, float b) {
         style.Colors[which] = {r, g, b, 1.0F};
     };
@@ -55,8 +56,10 @@ void set_theme(float scale) {
     set(ImGuiCol_Button, 0.86F, 0.88F, 0.91F);
     set(ImGuiCol_ButtonHovered, 0.76F, 0.83F, 0.93F);
     set(ImGuiCol_ButtonActive, 0.62F, 0.74F, 0.90F);
-    style.Colors[ImGuiCol_SliderGrab] = {0.45F, 0.60F, 0.82F, 0.6F};  // over the number
-    style.Colors[ImGuiCol_SliderGrabActive] = {0.30F, 0.48F, 0.75F, 0.7F};
+    style.Colors[ImGuiCol_SliderGrab] = {0.45F, 0.62F, 0.88F, 0.40F};  // over the number
+    style.Colors[ImGuiCol_SliderGrabActive] = {0.30F, 0.50F, 0.82F, 0.55F};
+    set(ImGuiCol_TextDisabled, 0.42F, 0.43F, 0.46F);
+    style.Colors[ImGuiCol_ModalWindowDimBg] = {0.1F, 0.1F, 0.12F, 0.25F};
     set(ImGuiCol_CheckMark, 0.18F, 0.36F, 0.66F);
     style.Colors[ImGuiCol_Border] = {0.0F, 0.0F, 0.0F, 0.20F};
     style.FrameBorderSize = 1.0F;

@@ -82,7 +82,9 @@ struct Window::Callbacks {
     }
     static Input at_pointer(GLFWwindow* window, Input::Kind kind) {
         Input input{kind};
-        glfwGetCursorPos(window, &input.x, &input.y);
+        // Where it was at this event: by now the pointer may be elsewhere.
+        input.x = of(window).pointer_x_;
+        input.y = of(window).pointer_y_;
         const auto down = [&](int key) { return glfwGetKey(window, key) == GLFW_PRESS; };
         input.shift = down(GLFW_KEY_LEFT_SHIFT) || down(GLFW_KEY_RIGHT_SHIFT);
         input.ctrl = down(GLFW_KEY_LEFT_CONTROL) || down(GLFW_KEY_RIGHT_CONTROL);
@@ -93,7 +95,8 @@ struct Window::Callbacks {
         of(window).input_.push_back(std::move(input));
     }
 
-    static void button(GLFWwindow* window, int button, int action, int /*mods*/) {
+    static void button(GLFWwindow* window, int button, int action, int mods) {
+        ImGui_ImplGlfw_MouseButtonCallback(window, button, action, mods);
         const bool down = action == GLFW_PRESS;
         Input input = at_pointer(window, down ? Input::Kind::press : Input::Kind::release);
         input.button = button;
@@ -101,18 +104,22 @@ struct Window::Callbacks {
     }
     static void move(GLFWwindow* window, double x, double y) {
         Window& self = of(window);
+        self.pointer_x_ = x;
+        self.pointer_y_ = y;
         const auto [left, top, right, bottom] = self.quiet_;
         const bool quiet = x >= left && x < right && y >= top && y < bottom;
         self.activity_ |= !quiet;
         self.input_.push_back(at_pointer(window, Input::Kind::move));
     }
-    static void scroll(GLFWwindow* window, double /*x*/, double y) {
+    static void scroll(GLFWwindow* window, double x, double y) {
+        ImGui_ImplGlfw_ScrollCallback(window, x, y);
         Input input = at_pointer(window, Input::Kind::scroll);
         input.amount = y;
         add(window, input);
     }
     static void key(GLFWwindow* window, int key, int scancode, int action, int mods) {
         of(window).activity_ = true;
+        of(window).pass_on(key, scancode, action, mods);
         if (action == GLFW_RELEASE) return;
         const std::string name = key_name(key, scancode);
         const bool ctrl = (mods & (GLFW_MOD_CONTROL | GLFW_MOD_SUPER)) != 0;
@@ -124,6 +131,7 @@ struct Window::Callbacks {
         add(window, input);
     }
     static void character(GLFWwindow* window, unsigned code) {
+        ImGui_ImplGlfw_CharCallback(window, code);
         if (code >= 128) return;
         Input input = at_pointer(window, Input::Kind::key);
         input.key = code == ' ' ? "Space" : std::string(1, static_cast<char>(code));
@@ -138,6 +146,14 @@ struct Window::Callbacks {
         of(window).activity_ = true;
     }
     static void state(GLFWwindow* window, int /*on*/) { of(window).activity_ = true; }
+    static void enter(GLFWwindow* window, int entered) {
+        ImGui_ImplGlfw_CursorEnterCallback(window, entered);
+        state(window, entered);
+    }
+    static void focus(GLFWwindow* window, int focused) {
+        ImGui_ImplGlfw_WindowFocusCallback(window, focused);
+        state(window, focused);
+    }
 };
 
 Window::Window(ink::Size size, const std::string& title) {
@@ -174,8 +190,9 @@ Window::Window(ink::Size size, const std::string& title) {
     glfwSetWindowRefreshCallback(window_, Callbacks::refresh);
     glfwSetFramebufferSizeCallback(window_, Callbacks::resize);
     glfwSetWindowIconifyCallback(window_, Callbacks::state);
-    glfwSetCursorEnterCallback(window_, Callbacks::state);
-    glfwSetWindowFocusCallback(window_, Callbacks::state);
+    glfwSetCursorEnterCallback(window_, Callbacks::enter);
+    glfwSetWindowFocusCallback(window_, Callbacks::focus);
+    glfwGetCursorPos(window_, &pointer_x_, &pointer_y_);
     start_interface();
 }
 
@@ -187,7 +204,7 @@ void Window::start_interface() {
     ImGui::CreateContext();
     ImGui::GetIO().IniFilename = nullptr;  // leaves no file where it was started
     set_theme(scale_);
-    ImGui_ImplGlfw_InitForOpenGL(window_, true);
+    ImGui_ImplGlfw_InitForOpenGL(window_, false);  // the callbacks above pass events on
     ImGui_ImplOpenGL2_Init();
 }
 
@@ -230,8 +247,30 @@ void Window::wake() { glfwPostEmptyEvent(); }
 std::vector<Input> Window::take_input() { return std::exchange(input_, {}); }
 std::vector<std::filesystem::path> Window::take_drops() { return std::exchange(drops_, {}); }
 bool Window::take_activity() { return std::exchange(activity_, false); }
-bool Window::interface_has_pointer() const { return ImGui::GetIO().WantCaptureMouse; }
+// Not what it said of the pointer's last place: a quick hand is elsewhere by now.
+bool Window::interface_has_pointer() const {
+    return ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopupId) || ImGui::IsAnyItemActive();
+}
 bool Window::interface_has_keys() const { return ImGui::GetIO().WantTextInput; }
+
+/// Dear ImGui looks at keys once a frame. One that is pressed and released between two frames is
+/// released after the next one, or it would not notice.
+void Window::pass_on(int key, int scancode, int action, int mods) {
+    if (action == GLFW_PRESS) pressed_.push_back(key);
+    if (action == GLFW_RELEASE && std::ranges::find(pressed_, key) != pressed_.end()) {
+        late_releases_.push_back({key, scancode, mods});
+    } else {
+        ImGui_ImplGlfw_KeyCallback(window_, key, scancode, action, mods);
+    }
+}
+
+void Window::release_late_keys() {
+    pressed_.clear();
+    for (const auto [key, scancode, mods] : std::exchange(late_releases_, {})) {
+        ImGui_ImplGlfw_KeyCallback(window_, key, scancode, GLFW_RELEASE, mods);
+        activity_ = true;
+    }
+}
 
 void Window::begin_frame() {
     ImGui_ImplOpenGL2_NewFrame();
@@ -248,6 +287,7 @@ void Window::end_frame() {
     glClear(GL_COLOR_BUFFER_BIT);
     ImGui_ImplOpenGL2_RenderDrawData(ImGui::GetDrawData());
     glfwSwapBuffers(window_);
+    release_late_keys();
 }
 
 void* Window::texture(const Picture& picture, std::uint64_t number, bool smooth) {

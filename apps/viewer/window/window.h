@@ -54,7 +54,7 @@ class Window {
     bool take_activity();
     /// The pointer's moves inside a rectangle are no activity: left, top, right, bottom.
     void set_quiet_area(const std::array<float, 4>& area) { quiet_ = area; }
-    /// Whether the user interface wants the pointer or the keys for itself.
+    /// Whether the user interface wants the pointer, wherever it is, or the keys for itself.
     bool interface_has_pointer() const;
     bool interface_has_keys() const;
 
@@ -69,12 +69,20 @@ class Window {
   private:
     struct Callbacks;
     void start_interface();
+    void pass_on(int key, int scancode, int action, int mods);
+    void release_late_keys();
 
+    struct Release {
+        int key, scancode, mods;
+    };
     GLFWwindow* window_ = nullptr;
     float scale_ = 1.0F;
     std::vector<Input> input_;
     std::vector<std::filesystem::path> drops_;
     bool activity_ = true;
+    double pointer_x_ = 0.0, pointer_y_ = 0.0;  ///< as of the last event
+    std::vector<int> pressed_;                  ///< keys, since the last frame
+    std::vector<Release> late_releases_;        ///< of such keys
     std::array<float, 4> quiet_{};
     unsigned texture_ = 0;
     ink::Size texture_size_;
