@@ -117,8 +117,11 @@ void draw_performance(Interface& interface) {
     if (painting.scale < 1.0) {
         row("", fmt::format("a ray to {0:.2g} x {0:.2g} pixels", 1.0 / painting.scale));
     }
-    row("frame", fmt::format("{:.1f} ms, {:.0f} a second", painting.frame_ms,
-                             1e3 / std::max(painting.frame_ms, 1e-3)));
+    std::string frame = fmt::format("{:.1f} ms", painting.frame_ms);
+    if (!painting.exact) {
+        frame += fmt::format(", {:.0f} a second", 1e3 / std::max(painting.frame_ms, 1e-3));
+    }
+    row("frame", frame);
     row("threads", fmt::format("{}", stats.threads));
     row("latency", fmt::format("{:.1f} ms", painting.latency_ms));
     row("rays",
@@ -131,10 +134,9 @@ void draw_performance(Interface& interface) {
 }
 
 void draw_welcome(Interface& interface, float width, float height) {
-    if (interface.session.has_scene()) return;
-    const char* const text = interface.session.loading()
-                                 ? "Loading..."
-                                 : "Drop a molecule, particles or a mesh here, or press Ctrl+O";
+    const char* text = "Drop a molecule, particles or a mesh here, or press Ctrl+O";
+    if (interface.session.has_scene()) text = "Drawing...";
+    if (interface.session.loading()) text = "Loading...";
     const ImVec2 size = ImGui::CalcTextSize(text);
     ImGui::GetBackgroundDrawList()->AddText({0.5F * (width - size.x), 0.5F * (height - size.y)},
                                             IM_COL32(90, 90, 90, 255), text);

@@ -12,7 +12,7 @@ void draw_status_bar(Interface& interface, float top, float width);
 void draw_timeline(Interface& interface, float top, float width);
 /// Times of the last picture, over its upper left corner.
 void draw_performance(Interface& interface);
-/// What there is to do where no file is open.
+/// What there is to do, or to wait for, where there is no picture.
 void draw_welcome(Interface& interface, float width, float height);
 
 inline constexpr float kBarPoints = 28.0F;

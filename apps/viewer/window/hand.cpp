@@ -113,6 +113,10 @@ bool Hand::look() {
         interface_.under_pointer =
             over_picture ? interface_.session.pick(last_x_, last_y_) : std::nullopt;
     });
+    // What is under the pointer is told where news were told before.
+    if (interface_.under_pointer && !interface_.session.message().is_error) {
+        interface_.session.say("");
+    }
     return before || interface_.under_pointer;
 }
 

@@ -282,8 +282,8 @@ void Window::end_frame() {
     ImGui::Render();
     const ink::Size now = size();
     glViewport(0, 0, now.width, now.height);
-    constexpr float kGray = 0.25F;
-    glClearColor(kGray, kGray, kGray, 1.0F);
+    constexpr float kPaper = 1.0F;
+    glClearColor(kPaper, kPaper, kPaper, 1.0F);
     glClear(GL_COLOR_BUFFER_BIT);
     ImGui_ImplOpenGL2_RenderDrawData(ImGui::GetDrawData());
     glfwSwapBuffers(window_);
