@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <cstring>
 
 // Everything between the two namespace macros is built once for each instruction set.
 #undef HWY_TARGET_INCLUDE
@@ -362,9 +363,9 @@ struct GlyphTest {
 /// A lane's numbers.
 template <class Form>
 HWY_INLINE Form form_of(const ScreenPacket& packet, int lane) {
-    std::array<float, sizeof(Form) / sizeof(float)> values;
-    for (std::size_t k = 0; k < values.size(); ++k) values[k] = packet.form[k][lane];
-    return std::bit_cast<Form>(values);
+    Form form;
+    std::memcpy(&form, packet.forms[static_cast<std::size_t>(lane)].data(), sizeof(form));
+    return form;
 }
 
 template <GlyphKind kKind>
@@ -406,41 +407,11 @@ HWY_INLINE void for_kind(const Basis& basis, const ScreenPacket& packet, const R
     }
 }
 
-/// Which of sixteen triangles are not beyond an edge from a window, by its corner that lies
-/// farthest inside; sixteen at a time what TriangleTest::may_cover says of one.
-HWY_INLINE LaneBits may_cover_window(const ScreenPacket& packet, const Window& window) {
-    const auto left = set(window.left);
-    const auto top = set(window.top);
-    const auto width = set(window.right - window.left);
-    const auto height = set(window.bottom - window.top);
-    const auto zero = hn::Zero(kFloats);
-    LaneBits all = 0;
-    for (int i = 0; i < kLanes; i += kStep) {
-        auto covers = hn::Eq(zero, zero);
-        for (std::size_t k = 0; k < 12; k += 4) {
-            const auto dx = load(packet.form[k + 2], i);
-            const auto dy = load(packet.form[k + 3], i);
-            const auto along = hn::Mul(dx, hn::Sub(top, load(packet.form[k + 1], i)));
-            const auto across = hn::Mul(dy, hn::Sub(left, load(packet.form[k], i)));
-            const auto slack = hn::Mul(hn::Add(hn::Abs(along), hn::Abs(across)), set(kRounding));
-            const auto most = hn::Add(hn::Mul(hn::Max(dx, zero), height),
-                                      hn::Mul(hn::Max(hn::Neg(dy), zero), width));
-            const auto value = hn::Add(hn::Sub(along, across), hn::Add(most, slack));
-            covers = hn::And(covers, hn::Ge(value, zero));
-        }
-        all |= bits(covers) << static_cast<unsigned>(i);
-    }
-    return all;
-}
-
 void intersect_front(const Basis& basis, const ScreenPacket* packets, std::uint32_t index,
                      Front& front) {
     const ScreenPacket& packet = packets[index];
     LaneBits lanes = overlap_lanes(packet.bounds, front.window);
     if (lanes == 0) return;
-    if (packet.kind == ClusterKind::triangles || packet.kind == ClusterKind::solids) {
-        lanes &= may_cover_window(packet, front.window);
-    }
     for_kind(basis, packet, [&](const auto& make) {
         for (; lanes != 0; lanes &= lanes - 1) {
             const int lane = std::countr_zero(lanes);

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <limits>
+#include <tuple>
 
 // Everything between the two namespace macros is built once for each instruction set.
 #undef HWY_TARGET_INCLUDE
@@ -88,13 +89,39 @@ HWY_INLINE void put_bounds(Half left, Half right, Half top, Half bottom, Half de
     put(hn::Sub(depth, number_f(kDepthSlack)), bounds.depth, i);
 }
 
+/// A form's numbers for all sixteen lanes, as they are computed.
+using FormLanes = std::array<Lanes<float>, std::tuple_size_v<FormNumbers>>;
+
+/// The first `count` numbers, a multiple of four, lane by lane.
+HWY_INLINE void lay_side_by_side(const FormLanes& form, std::size_t count,
+                                 std::array<FormNumbers, kLanes>& forms) {
+    using Four = hn::FixedTag<float, 4>;
+    constexpr Four kFour;
+    for (std::size_t k = 0; k < count; k += 4) {
+        for (std::size_t lane = 0; lane < kLanes; lane += 4) {
+            const auto a = hn::Load(kFour, form[k].data() + lane);
+            const auto b = hn::Load(kFour, form[k + 1].data() + lane);
+            const auto c = hn::Load(kFour, form[k + 2].data() + lane);
+            const auto d = hn::Load(kFour, form[k + 3].data() + lane);
+            const auto ac_low = hn::InterleaveLower(kFour, a, c);
+            const auto ac_high = hn::InterleaveUpper(kFour, a, c);
+            const auto bd_low = hn::InterleaveLower(kFour, b, d);
+            const auto bd_high = hn::InterleaveUpper(kFour, b, d);
+            hn::StoreU(hn::InterleaveLower(kFour, ac_low, bd_low), kFour, &forms[lane][k]);
+            hn::StoreU(hn::InterleaveUpper(kFour, ac_low, bd_low), kFour, &forms[lane + 1][k]);
+            hn::StoreU(hn::InterleaveLower(kFour, ac_high, bd_high), kFour, &forms[lane + 2][k]);
+            hn::StoreU(hn::InterleaveUpper(kFour, ac_high, bd_high), kFour, &forms[lane + 3][k]);
+        }
+    }
+}
+
 // ---- Spheres ----
 
 /// The outline of a sphere at C (from the eye) with radius r is the conic where
 /// (C . D)^2 = (|C|^2 - r^2) |D|^2 for D = (x, y, 1). Taken about its centre,
 /// C.z (C.x, C.y) / (C.z^2 - r^2), nothing cancels.
-void prepare_perspective(Basis basis, const SphereLanes& spheres, ScreenPacket& packet) {
-    auto& form = packet.form;
+HWY_INLINE void prepare_perspective(const Basis& basis, const SphereLanes& spheres,
+                                    BoundsPacket& bounds, FormLanes& form) {
     const double pixels = 1.0 / basis.slope_step;
     const double step2 = basis.slope_step * basis.slope_step;
     for (int i = 0; i < kLanes; i += kStep) {
@@ -123,12 +150,12 @@ void prepare_perspective(Basis basis, const SphereLanes& spheres, ScreenPacket& 
         put(z, form[8], i);
         put_bounds(rounded(hn::Sub(u, width)), rounded(hn::Add(u, width)),
                    rounded(hn::Sub(v, height)), rounded(hn::Add(v, height)), rounded(hn::Sub(z, r)),
-                   i, packet.bounds);
+                   i, bounds);
     }
 }
 
-void prepare_orthographic(Basis basis, const SphereLanes& spheres, ScreenPacket& packet) {
-    auto& form = packet.form;
+HWY_INLINE void prepare_orthographic(const Basis& basis, const SphereLanes& spheres,
+                                     BoundsPacket& bounds, FormLanes& form) {
     const double pixels = 1.0 / basis.origin_step;
     const Double step2 = number(basis.origin_step * basis.origin_step);
     for (int i = 0; i < kLanes; i += kStep) {
@@ -148,16 +175,18 @@ void prepare_orthographic(Basis basis, const SphereLanes& spheres, ScreenPacket&
         put(z, form[8], i);
         put_bounds(rounded(hn::Sub(u, reach)), rounded(hn::Add(u, reach)),
                    rounded(hn::Sub(v, reach)), rounded(hn::Add(v, reach)), rounded(hn::Sub(z, r)),
-                   i, packet.bounds);
+                   i, bounds);
     }
 }
 
 void prepare_spheres(Basis basis, const SphereLanes& spheres, ScreenPacket& packet) {
+    FormLanes form;
     if (basis.orthographic) {
-        prepare_orthographic(basis, spheres, packet);
+        prepare_orthographic(basis, spheres, packet.bounds, form);
     } else {
-        prepare_perspective(basis, spheres, packet);
+        prepare_perspective(basis, spheres, packet.bounds, form);
     }
+    lay_side_by_side(form, 12, packet.forms);
     packet.hit[0] = spheres.centre.x;
     packet.hit[1] = spheres.centre.y;
     packet.hit[2] = spheres.centre.z;
@@ -228,7 +257,7 @@ HWY_INLINE void lay_plane(const Basis& basis, const Corner& a, const Corner& b, 
 }
 
 void prepare_triangles(Basis basis, const TriangleLanes& triangles, ScreenPacket& packet) {
-    auto& form = packet.form;
+    FormLanes form;
     for (int i = 0; i < kLanes; i += kStep) {
         Corner a = project(basis, triangles.a, i);
         Corner b = project(basis, triangles.b, i);
@@ -260,6 +289,7 @@ void prepare_triangles(Basis basis, const TriangleLanes& triangles, ScreenPacket
         order(a, b);
         lay_plane(basis, a, b, c, i, &form[12]);
     }
+    lay_side_by_side(form, 24, packet.forms);
 }
 
 /// With p = u (b - a) + v (c - a) and n = (b - a) x (c - a): p x (c - a) = u n, (b - a) x p = v n.
@@ -344,7 +374,7 @@ HWY_INLINE void bound_glyphs(const Basis& basis, bool flat, const Triple& c, con
 }
 
 void prepare_glyphs(Basis basis, const GlyphLanes& glyphs, ScreenPacket& packet) {
-    auto& form = packet.form;
+    FormLanes form;
     const bool flat =
         packet.shape.kind == GlyphKind::disc || packet.shape.kind == GlyphKind::rectangle;
     for (int i = 0; i < kLanes; i += kStep) {
@@ -387,6 +417,7 @@ void prepare_glyphs(Basis basis, const GlyphLanes& glyphs, ScreenPacket& packet)
                            number_f(std::numeric_limits<float>::infinity())),
             packet.bounds.left, i);
     }
+    lay_side_by_side(form, 16, packet.forms);
 }
 
 // ---- Boxes ----

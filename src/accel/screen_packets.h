@@ -51,11 +51,15 @@ struct GlyphForm {
     float turn;
 };
 
-/// The primitives of a cluster as a camera sees them, each number for all sixteen side by side.
+/// The numbers of SphereForm, TriangleForm or GlyphForm in order, and room to move them by fours.
+/// Each form lies in a place of its own: few of a cluster's primitives are asked for at a time.
+using FormNumbers = std::array<float, 24>;
+static_assert(sizeof(TriangleForm) <= sizeof(FormNumbers));
+
+/// The primitives of a cluster as a camera sees them.
 struct ScreenPacket {
     BoundsPacket bounds;
-    /// The numbers of SphereForm, TriangleForm or GlyphForm, in order.
-    std::array<Lanes<float>, sizeof(TriangleForm) / sizeof(float)> form;
+    std::array<FormNumbers, kLanes> forms;
     /// What a hit needs of its primitive. Of a sphere its centre. Of a triangle its first corner,
     /// normal, u and v axes: with p the hit less the corner, the barycentric coordinates are u . p
     /// and v . p. Of a glyph the rows of the inverse of its placement's map.
