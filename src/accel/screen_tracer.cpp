@@ -354,7 +354,7 @@ class ScreenFrameTracer final : public FrameTracer {
         return std::make_unique<ScreenTileTracer>(view_);
     }
 
-    bool is_suited() const;
+    bool is_suited(const Window& part) const;
 
   private:
     View view_;
@@ -366,18 +366,23 @@ class ScreenFrameTracer final : public FrameTracer {
 /// 0.6.
 constexpr float kMostClustersPerHit = 0.38F;
 
-/// By squares all over the part of the picture that the scene covers, the fewer the smaller that
-/// is.
-bool ScreenFrameTracer::is_suited() const {
-    constexpr float kSide = kBlockSide * kProbeSide;
+/// The part of the picture that the scene covers, q, if its box did.
+Window covered(const Clusters& clusters, const Projection& projection) {
+    BoundsPacket boxes;
+    const Clusters::Level& top = clusters.levels.back();
+    prepare(Basis(projection), top.boxes[0], top.count, boxes);
     BoundsPacket whole = BoundsPacket::none();
-    set_union(view_.pyramid.at(view_.pyramid.top(), 0), whole, 0);
+    set_union(boxes, whole, 0);
     // The axis is in the middle of the picture.
-    const Vec2f centre = view_.projection.centre;
-    const float left = std::max(whole.left[0], -centre.x);
-    const float right = std::min(whole.right[0], centre.x);
-    const float top = std::max(whole.top[0], -centre.y);
-    const float bottom = std::min(whole.bottom[0], centre.y);
+    const Vec2f centre = projection.centre;
+    return {std::max(whole.left[0], -centre.x), std::min(whole.right[0], centre.x),
+            std::max(whole.top[0], -centre.y), std::min(whole.bottom[0], centre.y), kInfinity};
+}
+
+/// By squares all over that part, the fewer the smaller it is.
+bool ScreenFrameTracer::is_suited(const Window& part) const {
+    constexpr float kSide = kBlockSide * kProbeSide;
+    const auto [left, right, top, bottom, farthest] = part;
     const auto probes = [](float size) { return std::clamp(static_cast<int>(size) / 64, 1, 4); };
     const int across = probes(right - left);
     const int down = probes(bottom - top);
@@ -391,8 +396,8 @@ bool ScreenFrameTracer::is_suited() const {
                 from + (to - from) * (static_cast<float>(i) + 0.5F) / static_cast<float>(count);
             return std::floor(middle - 0.5F * kSide);
         };
-        const Vec2f corner{place(k % across, across, left, right) + centre.x,
-                           place(k / across, down, top, bottom) + centre.y};
+        const Vec2f corner{place(k % across, across, left, right) + view_.projection.centre.x,
+                           place(k / across, down, top, bottom) + view_.projection.centre.y};
         const ScreenEffort one = tile.probe(corner, most - sum.clusters);
         sum.clusters += one.clusters;
         sum.hits += one.hits;
@@ -404,7 +409,14 @@ bool ScreenFrameTracer::is_suited() const {
 
 bool suits_screen_tracer(const Clusters& clusters, const Projection& projection) {
     constexpr std::size_t kFew = 1000;  // suit everything
-    return clusters.clusters.size() <= kFew || ScreenFrameTracer(clusters, projection).is_suited();
+    if (clusters.clusters.size() <= kFew) return true;
+    const Window part = covered(clusters, projection);
+    // So many clusters a pixel never did.
+    constexpr float kTooMany = 2.0F;
+    const float pixels =
+        std::max(part.right - part.left, 0.0F) * std::max(part.bottom - part.top, 0.0F);
+    if (static_cast<float>(clusters.clusters.size()) > kTooMany * pixels) return false;
+    return ScreenFrameTracer(clusters, projection).is_suited(part);
 }
 
 std::unique_ptr<FrameTracer> make_screen_tracer(const Clusters& clusters,
