@@ -11,33 +11,10 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "accel/screen_lanes-inl.h"
+
 HWY_BEFORE_NAMESPACE();
 namespace ink::HWY_NAMESPACE {
-
-namespace hn = hwy::HWY_NAMESPACE;
-
-using Floats = hn::CappedTag<float, kLanes>;
-using Indices = hn::Rebind<std::uint32_t, Floats>;
-using Integers = hn::Rebind<std::int32_t, Floats>;
-constexpr Floats kFloats;
-constexpr Indices kIndices;
-constexpr Integers kIntegers;
-constexpr int kStep = static_cast<int>(hn::MaxLanes(Floats()));
-using Vector = hn::Vec<Floats>;
-using Mask = hn::Mask<Floats>;
-
-template <class T>
-HWY_INLINE auto load(const Lanes<T>& lanes, int first) {
-    return hn::Load(hn::CappedTag<T, kLanes>(), lanes.data() + first);
-}
-
-HWY_INLINE Vector set(float value) { return hn::Set(kFloats, value); }
-
-HWY_INLINE LaneBits bits(Mask mask) {
-    alignas(8) std::uint8_t bytes[8] = {};
-    hn::StoreMaskBits(kFloats, mask, bytes);
-    return bytes[0] | static_cast<LaneBits>(bytes[1]) << 8U;
-}
 
 HWY_INLINE float least(const Lanes<float>& lanes) {
     auto all = load(lanes, 0);
@@ -200,40 +177,6 @@ struct TriangleTest {
 
 // ---- Glyphs ----
 
-struct Vectors {
-    Vector x, y, z;
-};
-
-HWY_INLINE Vector dot(const Vectors& a, const Vectors& b) {
-    return hn::Add(hn::Add(hn::Mul(a.x, b.x), hn::Mul(a.y, b.y)), hn::Mul(a.z, b.z));
-}
-HWY_INLINE Vectors along(const Vectors& o, const Vectors& d, Vector s) {
-    return {hn::Add(o.x, hn::Mul(s, d.x)), hn::Add(o.y, hn::Mul(s, d.y)),
-            hn::Add(o.z, hn::Mul(s, d.z))};
-}
-/// A number that can be divided by.
-HWY_INLINE Vector not_zero(Vector v) {
-    const auto tiny = hn::Lt(hn::Abs(v), set(1e-30F));
-    return hn::IfThenElse(tiny, set(1e-30F), v);
-}
-
-/// Rays in the coordinates of a unit shape: p + s d; see GlyphForm.
-struct LocalRays {
-    Vectors p, d;
-};
-
-HWY_INLINE LocalRays local_rays(const GlyphForm& form, Vector qx, Vector qy) {
-    const auto dx = hn::Sub(qx, set(form.u));
-    const auto dy = hn::Sub(qy, set(form.v));
-    const auto own = [&](std::size_t k) {
-        return hn::Add(hn::Mul(set(form.right[k]), dx), hn::Mul(set(form.down[k]), dy));
-    };
-    LocalRays rays{{own(0), own(1), own(2)}, {}};
-    rays.d =
-        along({set(form.ahead[0]), set(form.ahead[1]), set(form.ahead[2])}, rays.p, set(form.turn));
-    return rays;
-}
-
 /// Moves the rays' points to those nearest to the origin, where they are of the shape's size, and
 /// returns how far.
 HWY_INLINE Vector approach(LocalRays& rays) {
@@ -359,14 +302,6 @@ struct GlyphTest {
 };
 
 // ---- Packets ----
-
-/// A lane's numbers.
-template <class Form>
-HWY_INLINE Form form_of(const ScreenPacket& packet, int lane) {
-    Form form;
-    std::memcpy(&form, packet.forms[static_cast<std::size_t>(lane)].data(), sizeof(form));
-    return form;
-}
 
 template <GlyphKind kKind>
 HWY_INLINE GlyphTest<kKind> glyph_test(const ScreenPacket& packet, int lane) {
@@ -591,174 +526,6 @@ void start_front(float centre_x, float centre_y, float slope_step, const PointPa
         hn::GetLane(hn::MaxOfLanes(kFloats, farthest))};
 }
 
-// ---- Hits ----
-
-/// Lanes of a hit packet, to be written.
-struct HitLanes {
-    Mask lanes;
-    int i;
-    HitPacket& hits;
-
-    HWY_INLINE void put(Vector value, Lanes<float>& to) const {
-        hn::Store(hn::IfThenElse(lanes, value, load(to, i)), kFloats, to.data() + i);
-    }
-    HWY_INLINE void put(std::uint32_t value, Lanes<std::uint32_t>& to) const {
-        const auto merged =
-            hn::IfThenElse(hn::RebindMask(kIndices, lanes), hn::Set(kIndices, value), load(to, i));
-        hn::Store(merged, kIndices, to.data() + i);
-    }
-    HWY_INLINE void put_normal(const Vectors& n) const {
-        put(n.x, hits.normal_x);
-        put(n.y, hits.normal_y);
-        put(n.z, hits.normal_z);
-    }
-};
-
-HWY_INLINE Vectors vectors(const ScreenPacket& packet, int lane, std::size_t first) {
-    return {set(packet.hit[first][lane]), set(packet.hit[first + 1][lane]),
-            set(packet.hit[first + 2][lane])};
-}
-
-/// The hits of a sphere or triangle, from their place in the scene.
-HWY_INLINE void resolve_placed(const ScreenPacket& packet, int lane, const RayPacket& rays,
-                               const HitLanes& to) {
-    const int i = to.i;
-    const Vectors from = vectors(packet, lane, 0);
-    const auto t = load(to.hits.t, i);
-    const auto at = [&](const Lanes<float>& origin, const Lanes<float>& dir, Vector from_origin) {
-        return hn::Sub(hn::Add(load(origin, i), hn::Mul(t, load(dir, i))), from_origin);
-    };
-    if (packet.kind == ClusterKind::solids) return to.put_normal(vectors(packet, lane, 3));
-    const Vectors p{at(rays.origin_x, rays.dir_x, from.x), at(rays.origin_y, rays.dir_y, from.y),
-                    at(rays.origin_z, rays.dir_z, from.z)};
-    if (packet.kind == ClusterKind::spheres) return to.put_normal(p);
-    const auto zero = hn::Zero(kFloats);
-    const auto one = set(1.0F);
-    const auto u = hn::Min(hn::Max(dot(p, vectors(packet, lane, 6)), zero), one);
-    const auto v = hn::Min(hn::Max(dot(p, vectors(packet, lane, 9)), zero), hn::Sub(one, u));
-    to.put_normal(vectors(packet, lane, 3));
-    to.put(u, to.hits.u);
-    to.put(v, to.hits.v);
-}
-
-/// The normal of a unit shape at a point of its surface.
-HWY_INLINE Vectors unit_normal(const UnitShape& shape, const Vectors& p) {
-    const auto zero = hn::Zero(kFloats);
-    const auto one = set(1.0F);
-    switch (shape.kind) {
-        case GlyphKind::ellipsoid: return p;
-        case GlyphKind::box: {
-            // Of the face that the point is nearest to.
-            const auto x = hn::Abs(p.x);
-            const auto y = hn::Abs(p.y);
-            const auto z = hn::Abs(p.z);
-            const auto on_x = hn::And(hn::Ge(x, y), hn::Ge(x, z));
-            const auto on_y = hn::AndNot(on_x, hn::Ge(y, z));
-            const auto on_z = hn::Not(hn::Or(on_x, on_y));
-            return {hn::IfThenElseZero(on_x, hn::CopySign(one, p.x)),
-                    hn::IfThenElseZero(on_y, hn::CopySign(one, p.y)),
-                    hn::IfThenElseZero(on_z, hn::CopySign(one, p.z))};
-        }
-        case GlyphKind::frustum: {
-            const auto slope = 0.5F * (static_cast<float>(shape.a) - 1.0F);
-            const auto middle = 0.5F * (1.0F + static_cast<float>(shape.a));
-            const auto radius = hn::Add(set(middle), hn::Mul(set(slope), p.z));
-            const auto about = hn::Sqrt(hn::Add(hn::Mul(p.x, p.x), hn::Mul(p.y, p.y)));
-            const auto off_side = hn::Abs(hn::Sub(about, radius));
-            const auto off_cap = hn::Abs(hn::Sub(hn::Abs(p.z), one));
-            const auto on_cap = shape.capped ? hn::Lt(off_cap, off_side) : hn::Lt(one, zero);
-            return {hn::IfThenElse(on_cap, zero, p.x), hn::IfThenElse(on_cap, zero, p.y),
-                    hn::IfThenElse(on_cap, hn::CopySign(one, p.z), hn::Mul(set(-slope), radius))};
-        }
-        default: return {zero, zero, one};
-    }
-}
-
-HWY_INLINE void resolve_glyph(const ScreenPacket& packet, int lane, const Front& front,
-                              const HitLanes& to) {
-    const int i = to.i;
-    const auto form = form_of<GlyphForm>(packet, lane);
-    const LocalRays rays = local_rays(form, load(front.x, i), load(front.y, i));
-    const auto s = hn::Sub(load(front.depth, i), set(form.z));
-    const Vectors n = unit_normal(packet.shape, along(rays.p, rays.d, s));
-    const Vectors x = vectors(packet, lane, 0);
-    const Vectors y = vectors(packet, lane, 3);
-    const Vectors z = vectors(packet, lane, 6);
-    const auto turned = [&](Vector a, Vector b, Vector c) {
-        return hn::Add(hn::Add(hn::Mul(a, n.x), hn::Mul(b, n.y)), hn::Mul(c, n.z));
-    };
-    to.put_normal({turned(x.x, y.x, z.x), turned(x.y, y.y, z.y), turned(x.z, y.z, z.z)});
-}
-
-/// The lanes of a hit packet that one primitive won.
-HWY_INLINE void resolve_winner(const ScreenPacket* packets, std::uint32_t winner,
-                               const Front& front, const RayPacket& rays, HitPacket& hits) {
-    const ScreenPacket& packet = packets[winner / kLanes];
-    const int lane = static_cast<int>(winner % kLanes);
-    for (int i = 0; i < kLanes; i += kStep) {
-        const auto own = hn::Eq(load(front.winner, i), hn::Set(kIndices, winner));
-        const auto depth = load(front.depth, i);
-        const auto lanes =
-            hn::And(hn::RebindMask(kFloats, own),
-                    hn::And(hn::Lt(depth, set(kInfinity)), hn::Gt(depth, set(-kInfinity))));
-        if (hn::AllFalse(kFloats, lanes)) continue;
-        const HitLanes to{lanes, i, hits};
-        if (packet.kind == ClusterKind::glyphs) {
-            resolve_glyph(packet, lane, front, to);
-        } else {
-            resolve_placed(packet, lane, rays, to);
-        }
-        to.put(packet.object, hits.object);
-        to.put(packet.primitive[lane], hits.primitive);
-    }
-}
-
-void resolve_front(const Front& front, const RayPacket& rays, const ScreenPacket* packets,
-                   HitPacket& hits) {
-    LaneBits left = 0;
-    for (int i = 0; i < kLanes; i += kStep) {
-        const auto depth = load(front.depth, i);
-        const auto hit = hn::And(hn::Lt(depth, set(kInfinity)), hn::Gt(depth, set(-kInfinity)));
-        left |= bits(hit) << static_cast<unsigned>(i);
-        // Rays start where depth is 0.
-        const auto t = hn::Div(depth, hn::Sqrt(load(front.foreshortening, i)));
-        hn::Store(hn::IfThenElse(hit, t, set(kInfinity)), kFloats, hits.t.data() + i);
-        for (Lanes<float>* lanes :
-             {&hits.normal_x, &hits.normal_y, &hits.normal_z, &hits.u, &hits.v}) {
-            hn::Store(hn::Zero(kFloats), kFloats, lanes->data() + i);
-        }
-        const auto none = hn::Set(kIndices, kNoObject);
-        hn::Store(none, kIndices, hits.object.data() + i);
-        hn::Store(none, kIndices, hits.primitive.data() + i);
-    }
-    while (left != 0) {
-        const std::uint32_t winner = front.winner[std::countr_zero(left)];
-        resolve_winner(packets, winner, front, rays, hits);
-        for (int i = 0; i < kLanes; i += kStep) {
-            const auto own = hn::Eq(load(front.winner, i), hn::Set(kIndices, winner));
-            left &= ~(bits(hn::RebindMask(kFloats, own)) << static_cast<unsigned>(i));
-        }
-    }
-}
-
-void identify_front(const Front& front, const ScreenPacket* packets, HitPacket& hits) {
-    LaneBits hit_lanes = 0;
-    for (int i = 0; i < kLanes; i += kStep) {
-        const auto depth = load(front.depth, i);
-        const auto hit = hn::And(hn::Lt(depth, set(kInfinity)), hn::Gt(depth, set(-kInfinity)));
-        hit_lanes |= bits(hit) << static_cast<unsigned>(i);
-        const auto t = hn::Div(depth, hn::Sqrt(load(front.foreshortening, i)));
-        hn::Store(hn::IfThenElse(hit, t, set(kInfinity)), kFloats, hits.t.data() + i);
-    }
-    for (int i = 0; i < kLanes; ++i) {
-        const bool hit = (hit_lanes >> static_cast<unsigned>(i) & 1U) != 0;
-        const std::uint32_t winner = front.winner[i];
-        hits.object[i] = hit ? packets[winner / kLanes].object : kNoObject;
-        hits.primitive[i] =
-            hit ? packets[winner / kLanes].primitive[static_cast<int>(winner % kLanes)] : kNoObject;
-    }
-}
-
 }  // namespace ink::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
@@ -768,12 +535,10 @@ namespace ink {
 
 HWY_EXPORT(find_overlap);
 HWY_EXPORT(find_union);
-HWY_EXPORT(identify_front);
 HWY_EXPORT(intersect_front);
 HWY_EXPORT(intersect_raster);
 HWY_EXPORT(raster_farthest);
 HWY_EXPORT(raster_matters);
-HWY_EXPORT(resolve_front);
 HWY_EXPORT(start_front);
 
 LaneBits overlap(const BoundsPacket& bounds, const Window& window) {
@@ -799,15 +564,6 @@ float farthest_of(const FrontRaster& raster) {
 
 bool matters(const BoundsPacket& bounds, int lane, const FrontRaster& raster) {
     return HWY_DYNAMIC_DISPATCH(raster_matters)(bounds, lane, raster);
-}
-
-void identify(const Front& front, const ScreenPacket* packets, HitPacket& hits) {
-    HWY_DYNAMIC_DISPATCH(identify_front)(front, packets, hits);
-}
-
-void resolve(const Front& front, const RayPacket& rays, const ScreenPacket* packets,
-             HitPacket& hits) {
-    HWY_DYNAMIC_DISPATCH(resolve_front)(front, rays, packets, hits);
 }
 
 void Front::start(const Projection& projection, const PointPacket& points) {
