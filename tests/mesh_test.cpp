@@ -537,6 +537,41 @@ TEST(SmoothNormals, SurviveTrianglesThatUseAVertexTwice) {
     }
 }
 
+/// A strip of paper with a fold that fades out halfway, of 20 triangles.
+Mesh folded_strip(float scale, Vec3f at) {
+    Mesh mesh;
+    constexpr std::uint32_t kSteps = 5;
+    for (std::uint32_t j = 0; j <= kSteps; ++j) {
+        const float angle =
+            std::numbers::pi_v<float> / 2.0f * static_cast<float>(kSteps - j) / kSteps;
+        const auto x = static_cast<float>(j);
+        for (const Vec3f p :
+             {Vec3f{x, -1, 0}, Vec3f{x, 0, 0}, Vec3f{x, std::cos(angle), std::sin(angle)}}) {
+            mesh.vertices.push_back(at + p * scale);
+        }
+        if (j == kSteps) break;
+        for (const std::uint32_t k : {3 * j, 3 * j + 1}) {
+            mesh.triangles.push_back({k, k + 3, k + 4});
+            mesh.triangles.push_back({k, k + 4, k + 1});
+        }
+    }
+    return mesh;
+}
+
+TEST(Creases, OfAPartAreThoseOfThePartAloneHoweverLargeTheAssembly) {
+    const Mesh part = folded_strip(0.01f, {3, 0, 0});
+    const std::size_t alone = creases(part);
+    EXPECT_GT(alone, 1u);
+    Mesh assembly = sphere(5);
+    ASSERT_EQ(creases(assembly), 0u);
+    const auto first = static_cast<std::uint32_t>(assembly.vertices.size());
+    for (const Vec3f& vertex : part.vertices) assembly.vertices.push_back(vertex);
+    for (const Mesh::Triangle& t : part.triangles) {
+        assembly.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
+    }
+    EXPECT_EQ(creases(assembly), alone);
+}
+
 // ---- real meshes -------------------------------------------------------------------------------
 
 template <class T>

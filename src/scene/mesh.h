@@ -65,14 +65,15 @@ struct CreaseSettings {
     /// cut evenly turn as much as their surroundings do; 2 leaves room for uneven cutting.
     float isolation = 2.0F;
 
-    /// Connected creases that reach over this share of the mesh's diagonal are kept: groups of
-    /// noise in scans reach up to 0.14, long lines of CAD parts 0.4 and more.
+    /// Connected creases that reach over this share of the diagonal of their piece of the mesh (an
+    /// assembly has many pieces) are kept: groups of noise in scans reach up to 0.14, long lines of
+    /// CAD parts 0.4 and more.
     float line_extent = 0.15F;
     /// Shorter ones are kept if they are so many and without a loose end: creases of a shape close
     /// up or end at the rim of the surface. Noise that does so is a spike of a triangle or two,
     /// with 3 or 5 edges around it; a hole in a plate has more sides.
     std::uint32_t closed_edges = 6;
-    /// A mesh of fewer triangles is drawn by hand and has no noise.
+    /// A piece of fewer triangles is drawn by hand and has no noise.
     std::size_t fine_triangles = 500;
 };
 

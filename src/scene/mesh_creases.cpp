@@ -19,7 +19,7 @@ namespace {
 /// trigonometry and keeps the digits of small turns.
 float chord(float degrees) { return 2.0F * std::sin(degrees * std::numbers::pi_v<float> / 360.0F); }
 
-/// Creases that hang together: first join all, then look at the groups.
+/// Edges that hang together: first join all, then look at the groups.
 class CreaseGroups {
   public:
     struct Group {
@@ -59,7 +59,7 @@ class CreaseGroups {
         return vertex;
     }
 
-    std::vector<std::uint32_t> parents_;  ///< trees of vertices that creases connect
+    std::vector<std::uint32_t> parents_;  ///< trees of vertices that edges connect
     std::vector<std::uint32_t> numbers_;  ///< a root: its group
     std::vector<Group> groups_;
 };
@@ -147,15 +147,31 @@ class EdgeClassifier {
         const std::vector<Corner> edges = each_crease_once();
         if (edges.empty()) return;
         CreaseGroups groups = groups_of(edges);
-        Bounds3f bounds;
-        for (const Vec3f& vertex : mesh_.vertices) bounds.add(vertex);
-        const double least = settings_.line_extent * extent(bounds);
+        CreaseGroups pieces = pieces_of_mesh();
         for (const Corner edge : edges) {
             const CreaseGroups::Group& group = groups.of(topology_.vertex(edge));
-            const bool keep = extent(group.bounds) >= least ||
-                              (!group.is_loose && group.edges >= settings_.closed_edges);
+            const CreaseGroups::Group& piece = pieces.of(topology_.vertex(edge));
+            const bool keep =
+                piece.edges < 3 * settings_.fine_triangles ||
+                extent(group.bounds) >= settings_.line_extent * extent(piece.bounds) ||
+                (!group.is_loose && group.edges >= settings_.closed_edges);
             if (!keep) creases_[edge] = creases_[topology_.twin(edge)] = 0;
         }
+    }
+
+    /// The mesh in pieces that hang together: an assembly has many, each with a size of its own.
+    CreaseGroups pieces_of_mesh() const {
+        CreaseGroups pieces(mesh_.vertices.size());
+        for (const Mesh::Triangle& triangle : mesh_.triangles) {
+            pieces.join(triangle[0], triangle[1]);
+            pieces.join(triangle[1], triangle[2]);
+        }
+        for (const Mesh::Triangle& triangle : mesh_.triangles) {
+            CreaseGroups::Group& piece = pieces.of(triangle[0]);
+            piece.edges += 3;
+            for (const std::uint32_t vertex : triangle) piece.bounds.add(mesh_.vertices[vertex]);
+        }
+        return pieces;
     }
 
     CreaseGroups groups_of(std::span<const Corner> edges) const {
