@@ -292,36 +292,47 @@ TEST(Svg, DrawsTranslucentLinesOfOneInkWithoutDarkSpotsWhereTheyMeet) {
     EXPECT_LT(mean_difference(ink_of(drawn.film), curves), 0.003);
 }
 
-TEST(Regions, LeaveNoGapsBetweenNeighbours) {
-    REQUIRE_RSVG();
-    Settings settings = picture(256);
+/// Draws regions alone in colours of their own, so that any two that are neighbours differ from
+/// each other, on paper of a third colour, and counts pixels of the picture that show the paper.
+void expect_no_gaps(Fill fill) {
+    constexpr int kSide = 256;
+    Settings settings = picture(kSide);
+    settings.fill = fill;
     settings.shading.transparent_background = true;
     Drawn drawn = draw(acetaminophen(), settings);
-    drawn.art.chains.clear();
-    drawn.art.curves.clear();
-    // Black regions on white paper: what shines through between two of them is not black.
-    for (Region& region : drawn.art.regions) region.color = {0, 0, 0};
+    drawn.art.strokes.clear();
+    std::uint8_t next = 0;
+    for (Region& region : drawn.art.regions) {
+        next = static_cast<std::uint8_t>(next + 37);
+        region.color = {next, 0, static_cast<std::uint8_t>(255 - next)};  // no green, as paper has
+    }
     constexpr int kScale = 4;
-    const std::vector<float> values = rasterised(svg_of(drawn.art), 256 * kScale);
-    ASSERT_EQ(values.size(), 256U * kScale * 256U * kScale);
+    const std::vector<float> green = rasterised(svg_of(drawn.art), kSide * kScale);
+    ASSERT_EQ(green.size(), 256U * kScale * 256U * kScale);
     const auto& pixels = drawn.film.display().pixels;
     const auto inside = [&](int x, int y) {
         for (int k = 0; k < 9; ++k) {
-            const int at = (y + k / 3 - 1) * 256 + x + k % 3 - 1;
+            const int at = (y + k / 3 - 1) * kSide + x + k % 3 - 1;
             if (pixels[static_cast<std::size_t>(at)] >> 24U != 255U) return false;
         }
         return true;
     };
     int checked = 0;
-    for (int y = kScale; y < 255 * kScale; ++y) {
-        for (int x = kScale; x < 255 * kScale; ++x) {
+    for (int y = kScale; y < (kSide - 1) * kScale; ++y) {
+        for (int x = kScale; x < (kSide - 1) * kScale; ++x) {
             if (!inside(x / kScale, y / kScale)) continue;
             ++checked;
-            ASSERT_LT(values[static_cast<std::size_t>(y * 256 * kScale + x)], 0.01F)
+            ASSERT_LT(green[static_cast<std::size_t>(y * kSide * kScale + x)], 0.01F)
                 << x << ", " << y;
         }
     }
     EXPECT_GT(checked, 100000);
+}
+
+TEST(Regions, LeaveNoGapsBetweenNeighbours) {
+    REQUIRE_RSVG();
+    expect_no_gaps(Fill::flat);
+    expect_no_gaps(Fill::two_tone);
 }
 
 }  // namespace

@@ -19,6 +19,8 @@ struct Drawing {
     std::vector<Segment> segments;
     /// Those on surfaces behind others, if they were asked for; not what a nearer line lies over.
     std::vector<Segment> hidden;
+    /// Whether the sides of `segments` are tones instead of geometries, see Tones.
+    bool tones = false;
     LineThinning thinning;
     float spacing = 1.0F;  ///< of the lattice, pixels
     /// Corners of the rectangle that was searched, pixels: beyond the picture by what lines reach

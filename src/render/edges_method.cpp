@@ -80,6 +80,7 @@ Edges::Edges(const Pipeline& shared)
       has_meshes(std::ranges::any_of(
           shared.scene.objects(),
           [](const Object& object) { return std::holds_alternative<Mesh>(object.shape); })),
+      tones(shared.lines.drawing != nullptr && shared.settings.divides_tones()),
       smooth_shading(shared.settings.smoothing().kind == AntiAliasing::Kind::edges),
       wanted(shared.settings.lines),
       styles_by_object(has_object_rules(shared.settings)),
@@ -146,6 +147,7 @@ namespace {
 
 /// Hands out what the drawing needs of the segments of all tiles.
 void keep_lines(const Edges& edges, const std::vector<std::vector<ColoredSegment>>& found,
+                const std::vector<std::vector<Segment>>& toned,
                 const std::vector<std::vector<Segment>>& hidden, Drawing& drawing) {
     drawing.spacing = 1.0F / static_cast<float>(edges.q);
     const Vec2f half{0.5F * drawing.spacing, 0.5F * drawing.spacing};
@@ -156,9 +158,21 @@ void keep_lines(const Edges& edges, const std::vector<std::vector<ColoredSegment
     drawing.segments.clear();
     for (const std::vector<ColoredSegment>& tile : found) {
         for (const ColoredSegment& line : tile) {
-            const Segment& segment = line.segment;
+            Segment segment = line.segment;
             const bool divides = segment.left != segment.right && segment.level == 0;
-            if (divides || edges.wanted.has(segment.type)) {
+            if (!divides && !edges.wanted.has(segment.type)) continue;
+            if (edges.tones) {
+                const bool again = segment.level == 0 && segment.type != LineType::ridge;
+                if (again) continue;  // they come with tones
+                Tones::double_ids(segment);
+            }
+            drawing.segments.push_back(segment);
+        }
+    }
+    drawing.tones = edges.tones;
+    for (const std::vector<Segment>& tile : toned) {
+        for (const Segment& segment : tile) {
+            if (segment.left != segment.right || edges.wanted.has(segment.type)) {
                 drawing.segments.push_back(segment);
             }
         }
@@ -206,6 +220,7 @@ FoundLines find_lines(const Edges& edges, WorkLoop& loop, RenderStats& stats) {
     const auto pool = static_cast<std::size_t>(loop.threads());
     FoundLines found;
     found.tiles.resize(edges.search_tiles.size());
+    found.toned.resize(edges.search_tiles.size());
     found.hidden.resize(edges.search_tiles.size());
     if (edges.wants_faces()) found.faces.emplace(pipeline.scene, pipeline.settings.size, edges.q);
     std::vector<std::unique_ptr<LineFinder>> finders(pool);
@@ -216,6 +231,7 @@ FoundLines find_lines(const Edges& edges, WorkLoop& loop, RenderStats& stats) {
                 std::make_unique<LineFinder>(edges, found.faces ? &*found.faces : nullptr);
         }
         found.tiles[i] = finders[worker]->search(edges.search_tiles[i]);
+        if (edges.tones) found.toned[i] = finders[worker]->take_toned();
         if (edges.behind.empty()) return;
         if (!behind[worker]) behind[worker] = std::make_unique<HiddenLineFinder>(edges);
         found.hidden[i] = behind[worker]->search(edges.search_tiles[i], *finders[worker]);
@@ -263,7 +279,7 @@ RenderStats render_edges(const Pipeline& pipeline, const RenderControl& control)
     RenderStats stats;
     FoundLines found = find_lines(edges, loop, stats);
     if (pipeline.lines.drawing != nullptr) {
-        keep_lines(edges, found.tiles, found.hidden, *pipeline.lines.drawing);
+        keep_lines(edges, found.tiles, found.toned, found.hidden, *pipeline.lines.drawing);
         pipeline.lines.drawing->thinning = found.thinning;
     }
     add_hidden_strokes(edges, found);

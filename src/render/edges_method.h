@@ -42,6 +42,7 @@ struct Edges {
     bool draw_lines;  ///< on the film
     bool find_lines;  ///< for the film, or as data
     bool has_meshes;
+    bool tones;           ///< divide geometries into light and shade, as data
     bool smooth_shading;  ///< blend the colours of pixels that a line cuts
     DetectSettings detect;
     LocateSettings locate;
@@ -63,6 +64,7 @@ struct Edges {
 /// What the pass that finds lines leaves to the pass that draws them.
 struct FoundLines {
     std::vector<std::vector<ColoredSegment>> tiles;  ///< of each of the tiles that were searched
+    std::vector<std::vector<Segment>> toned;         ///< likewise, see LineFinder::take_toned
     std::vector<std::vector<Segment>> hidden;        ///< likewise, on surfaces behind
     LineThinning thinning;                           ///< where they are dense
     std::optional<FaceMap> faces;                    ///< for lines between faces

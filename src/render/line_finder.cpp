@@ -202,6 +202,7 @@ std::vector<ColoredSegment> LineFinder::find_lines() {
     locator_.locate(grid_, suspects_, describe_, sample_, crossings_);
     if (faces_ != nullptr) cross_faces();
     connector_.connect(grid_, suspects_, crossings_, segments_);
+    if (front_ && edges_.tones) find_tones();
     if (faces_ != nullptr) drop_unmarked_faces();
     stats_.crossings += crossings_.size();
 
@@ -209,6 +210,29 @@ std::vector<ColoredSegment> LineFinder::find_lines() {
     found.reserve(segments_.size());
     keep(found);
     return found;
+}
+
+void LineFinder::find_tones() {
+    brightness_.assign(grid_.id.size(), 1.0F);
+    Lanes<float> bright;
+    for (std::size_t k = 0; k < blocks_.size(); ++k) {
+        edges_.pipeline.shader.brightness(
+            {sampler_.packets()[k], sampler_.points()[k], hits_[k], normals_[k]}, bright);
+        const Block& block = blocks_[k];
+        for (int j = 0; j < block.rows; ++j) {
+            for (int i = 0; i < block.columns; ++i) {
+                brightness_[grid_.index(block.x - grid_.x0 + i, block.y - grid_.y0 + j)] =
+                    bright[j * kBlockSide + i];
+            }
+        }
+    }
+    tone_connector_.connect(grid_, brightness_, suspects_, crossings_, toned_);
+    // Lines between faces divide none.
+    for (Segment segment : segments_) {
+        if (segment.type != LineType::mesh) continue;
+        Tones::double_ids(segment);
+        toned_.push_back(segment);
+    }
 }
 
 /// Adds the segments at hand, with the colours of their sides.

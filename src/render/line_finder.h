@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "lines/connect.h"
@@ -10,6 +11,7 @@
 #include "lines/detect.h"
 #include "lines/locate.h"
 #include "lines/segment.h"
+#include "lines/tones.h"
 #include "render/edges_method.h"
 #include "render/face_map.h"
 #include "render/ridge_search.h"
@@ -55,6 +57,9 @@ class LineFinder {
     std::span<const Crossing> crossings() const { return crossings_; }
     std::span<const SuspectEdge> crossed_edges() const { return suspects_; }
 
+    /// Of the last tile: its lines seen directly, with light and shade told apart (ToneConnector).
+    std::vector<Segment> take_toned() { return std::move(toned_); }
+
     /// Of the lines found so far that are to be drawn.
     const LineDensity& density() const { return density_; }
     /// Of those that are seen directly; unset without mirrors and glass.
@@ -96,6 +101,7 @@ class LineFinder {
     void put_pixels(int x, int y);
     void put_aovs(Block block);
     std::vector<ColoredSegment> find_lines();
+    void find_tones();
     void keep(std::vector<ColoredSegment>& found);
     void count(const Segment& segment);
     void add_specular(std::vector<ColoredSegment>& found);
@@ -152,6 +158,9 @@ class LineFinder {
     };
     std::vector<Cell> marked_;
     std::vector<Segment> segments_;
+    ToneConnector tone_connector_;
+    std::vector<float> brightness_;  ///< of the grid's points, if tones are told apart
+    std::vector<Segment> toned_;
     LineDensity density_, direct_density_;
     RenderStats stats_;
 };

@@ -153,7 +153,10 @@ const Words<ShadeMode> kShadeModes{{{"lambert", ShadeMode::lambert},
                                     {"gooch", ShadeMode::gooch},
                                     {"flat", ShadeMode::flat},
                                     {"none", ShadeMode::none}}};
-const Words<Fill> kFills{{{"none", Fill::none}, {"flat", Fill::flat}, {"image", Fill::image}}};
+const Words<Fill> kFills{{{"none", Fill::none},
+                          {"flat", Fill::flat},
+                          {"two-tone", Fill::two_tone},
+                          {"image", Fill::image}}};
 const Words<LineBlend> kBlends{{{"auto", LineBlend::automatic},
                                 {"display", LineBlend::display},
                                 {"linear", LineBlend::linear}}};
@@ -464,8 +467,8 @@ std::vector<Setting> make_table() {
 
         {"fill", "Curves", "WHAT",
          "What SVG and PDF show below the lines: flat (each geometry filled with one colour), "
-         "image "
-         "(the shaded picture, embedded) or none",
+         "two-tone (one for its light, one for its shade), image (the shaded picture, embedded) "
+         "or none",
          [](S& s, Text t) { s.fill = kFills.read(t); },
          [](const S& s) { return kFills.print(s.fill); }, false, one_of(kFills)},
         {"curve-tolerance", "Curves", "PX",

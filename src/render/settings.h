@@ -46,8 +46,9 @@ inline constexpr int kMostSpecularDepth = 16;
 /// What SVG and PDF show below the lines.
 enum class Fill : std::uint8_t {
     none,
-    flat,  ///< each geometry filled with one colour
-    image  ///< the shaded picture, embedded
+    flat,      ///< each geometry filled with one colour
+    two_tone,  ///< its light and its shaded part with one colour each
+    image      ///< the shaded picture, embedded
 };
 
 /// How lines on surfaces behind others are drawn.
@@ -116,6 +117,8 @@ struct Settings {
     std::optional<Dashes> hidden_dashes(double width_px, double length_px, bool closed) const;
     bool draws_hidden() const { return hidden.kind != HiddenLines::Kind::none && draws_lines(); }
     bool draws_lines() const { return compose != Compose::shaded && !lines.empty(); }
+    /// Whether curves are to show light and shade as regions of their own.
+    bool divides_tones() const { return fill == Fill::two_tone && compose != Compose::lines; }
     /// The metric that is set, or else the method's own.
     Metric profile() const;
     /// What the method makes of `aa`. Method "edges" knows none and edges, and samples more densely

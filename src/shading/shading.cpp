@@ -244,6 +244,34 @@ void Shader::illuminate(const SurfacePacket& surface, const ColorLanes& base,
     multiply(base, scattered, lit);
 }
 
+namespace {
+
+/// Of linear Rec. 709, which sRGB is.
+float luminance(Color color) { return 0.2126F * color.r + 0.7152F * color.g + 0.0722F * color.b; }
+
+}  // namespace
+
+void Shader::brightness(const SurfacePacket& surface, Lanes<float>& bright) const {
+    bright.fill(1.0F);
+    if (mode_ == ShadeMode::flat || mode_ == ShadeMode::none) return;
+    Lanes<float> open = Lanes<float>::filled(1.0F);
+    if (ambient_ != nullptr) ambient_->openness(surface, open);
+    ColorLanes scattered{};
+    add_sky(lights_.sky, surface, open, scattered);
+    float brightest = 0.0F;
+    for (const LightSource& light : lights_.sources) {
+        Lanes<float> visible = Lanes<float>::filled(1.0F);
+        if (light.shadows && shadows_.any()) shadows_.visible(light, surface, visible);
+        add_diffuse(light, surface, visible, scattered);
+        brightest = std::max(brightest, luminance(light.color));
+    }
+    const float full = luminance(lights_.sky.middle) + brightest;
+    if (full <= 0.0F) return;
+    for (int i = 0; i < kLanes; ++i) {
+        bright[i] = luminance({scattered.r[i], scattered.g[i], scattered.b[i]}) / full;
+    }
+}
+
 void Shader::add_fog(const SurfacePacket& surface, ColorLanes& lit) const {
     for (int i = 0; i < kLanes; ++i) {
         const float t = surface.hits.object[i] == kNoObject ? 0.0F : surface.hits.t[i];

@@ -65,6 +65,9 @@ class Shader {
     /// The same, from geometric normals.
     bool shade(const RayPacket& rays, const PointPacket& points, const HitPacket& hits,
                ColorPacket& colors) const;
+    /// How bright the surface is for the light that falls on it, whatever its colour: 1 where the
+    /// brightest light falls straight on. Where modes of shading know no light, 1.
+    void brightness(const SurfacePacket& surface, Lanes<float>& bright) const;
     /// Shading normals: interpolated where a mesh has normals at its corners, else geometric.
     void smooth(const HitPacket& hits, NormalPacket& normals) const;
     /// Normals that creases are found by, see NormalSource.

@@ -7,6 +7,7 @@
 
 #include "lines/fit_chains.h"
 #include "lines/junctions.h"
+#include "lines/tones.h"
 #include "vector/regions.h"
 
 namespace ink {
@@ -62,12 +63,16 @@ Layer curves_of(const std::vector<Segment>& segments, float spacing, const Setti
     return layer;
 }
 
+bool is_border_of_tones(const Chain& chain) {
+    return std::ranges::all_of(chain.strengths, [](float strength) { return strength == 0.0F; });
+}
+
 /// Moves the lines that were asked for into the drawing, with their styles.
 void add_lines(const Settings& settings, const LineThinning& thinning, Layer layer, LineArt& art) {
     const double shortest = settings.min_length.pixels(settings.dpi, settings.size.height);
     for (std::size_t k = 0; k < layer.graph.chains.size(); ++k) {
         Chain& chain = layer.graph.chains[k];
-        if (!settings.lines.has(chain.type)) continue;
+        if (!settings.lines.has(chain.type) || is_border_of_tones(chain)) continue;
         const double least = chain.hidden ? std::max(shortest, kShortestHidden) : shortest;
         const double size = least > 0.0 ? length_of(chain) : 0.0;
         if (size < least) continue;
@@ -90,6 +95,31 @@ void add_lines(const Settings& settings, const LineThinning& thinning, Layer lay
     }
 }
 
+/// Spots of light or shade this small, by the length round them in pixels, are left out.
+constexpr double kLeastSpot = 16.0;
+
+/// Without its curve, a line bounds no region.
+void drop_specks(Layer& layer) {
+    for (std::size_t k = 0; k < layer.graph.chains.size(); ++k) {
+        const Chain& chain = layer.graph.chains[k];
+        if (chain.closed && is_border_of_tones(chain) && length_of(chain) < kLeastSpot) {
+            layer.curves[k].pieces.clear();
+        }
+    }
+}
+
+/// Turns tones on the sides of lines into geometries again.
+void name_tones(std::vector<Chain>& chains, std::vector<Region>& regions) {
+    for (Chain& chain : chains) {
+        chain.left = Tones::geometry(chain.left);
+        chain.right = Tones::geometry(chain.right);
+    }
+    for (Region& region : regions) {
+        region.tone = Tones::shaded(region.id) ? Region::Tone::shade : Region::Tone::light;
+        region.id = Tones::geometry(region.id);
+    }
+}
+
 }  // namespace
 
 LineArt make_line_art(const Scene& scene, const Settings& settings, const Drawing& drawing,
@@ -105,10 +135,12 @@ LineArt make_line_art(const Scene& scene, const Settings& settings, const Drawin
     Layer direct =
         curves_of(levels == 1 ? drawing.segments : of_level(drawing, 0), drawing.spacing, settings);
     const Fill fill = settings.compose == Compose::lines ? Fill::none : settings.fill;
-    if (fill == Fill::flat) {
+    if (drawing.tones) drop_specks(direct);
+    if (fill == Fill::flat || fill == Fill::two_tone) {
         art.regions = make_regions(direct.graph, direct.curves, drawing.lower, drawing.upper);
         color_regions(art.regions, image, settings.threads);
     }
+    if (drawing.tones) name_tones(direct.graph.chains, art.regions);
     if (fill == Fill::image) art.image = image;
 
     if (!settings.draws_lines()) return art;

@@ -24,6 +24,7 @@ struct Region {
     GeometryId id = kBackground;
     std::vector<Curve> outlines;  ///< each ends where it starts
     Rgb8 color;                   ///< mean of its pixels
+    enum class Tone : std::uint8_t { one, light, shade } tone = Tone::one;
 };
 
 /// A drawing made of curves, ready to be written: what SVG, PDF and JSON have in common.

@@ -149,6 +149,8 @@ void SvgText::add_regions() {
     for (const Region& region : art_.regions) {
         text_ += "<path";
         add_names(region.id);
+        if (region.tone == Region::Tone::light) text_ += " data-tone=\"light\"";
+        if (region.tone == Region::Tone::shade) text_ += " data-tone=\"shade\"";
         add(" fill=\"{0}\" stroke=\"{0}\" d=\"", to_string(region.color));
         for (const Curve& outline : region.outlines) append_curve(text_, outline, true);
         text_ += "\"/>\n";
