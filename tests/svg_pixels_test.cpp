@@ -29,7 +29,6 @@ Object glyph(const UnitShape& shape, Vec3d axis) {
 struct Subject {
     std::string name;
     std::function<std::optional<Scene>()> scene;
-    double width_px = 3.0;  ///< narrow where lines are close to each other
 };
 
 std::vector<Subject> subjects() {
@@ -45,7 +44,7 @@ std::vector<Subject> subjects() {
              }},
             {"fandisk", file("meshes/fandisk.obj")},
             {"bunny", file("meshes/stanford-bunny.ply")},
-            {"4hhb", file("molecules/4hhb.pdb"), 1.5}};
+            {"4hhb", file("molecules/4hhb.pdb")}};
 }
 
 /// Ink on white, row by row.
@@ -81,10 +80,9 @@ Ink ink_of(const LineArt& art, int side) {
     return ink;
 }
 
-Drawn lines_alone(const Scene& scene, double width_px, int side = 1024) {
+Drawn lines_alone(const Scene& scene, int side = 1024) {
     Settings settings = picture(side);
     settings.compose = Compose::lines;
-    settings.line_width = {width_px, Length::Unit::px};
     return draw(scene, settings, true);
 }
 
@@ -102,7 +100,7 @@ TEST(Svg, HasTheInkOfThePixels) {
     for (const Subject& subject : subjects()) {
         const auto scene = subject.scene();
         if (!scene) continue;
-        const Drawn drawn = lines_alone(*scene, 3.0);
+        const Drawn drawn = lines_alone(*scene);
         EXPECT_LT(mean_difference(ink_of(drawn.film), ink_of(drawn.art, 1024)), 0.005)
             << subject.name;
     }
@@ -171,16 +169,17 @@ bool turns(const Chain& chain, std::uint32_t n, std::uint32_t reach) {
 TEST(Svg, DisplacesNoLineByMoreThanATenthOfAPixel) {
     REQUIRE_RSVG();
     constexpr int kSide = 1024;
+    constexpr double kWidthPx = 3.0;
     // librsvg itself flattens curves within a tenth of a pixel of its picture.
     constexpr int kScale = 4;
     for (const Subject& subject : subjects()) {
         const auto scene = subject.scene();
         if (!scene) continue;
-        const Drawn drawn = lines_alone(*scene, subject.width_px, kSide);
+        const Drawn drawn = lines_alone(*scene, kSide);
         const Ink pixels = ink_of(drawn.film);
         const Ink curves = ink_of(drawn.art, kScale * kSide);
         const Neighbours neighbours(drawn.art);
-        const double reach = 0.5 * subject.width_px + 1.5;
+        constexpr double reach = 0.5 * kWidthPx + 1.5;
         const auto clear = static_cast<std::uint32_t>(std::ceil(2.0 * reach));
         std::size_t places = 0;
         for (std::uint32_t k = 0; k < drawn.art.chains.size(); ++k) {
@@ -220,7 +219,7 @@ TEST(Svg, ThinsLinesWhereTheyAreDenseAsThePixelsDo) {
                              0.8F * size});
         }
     }
-    const Drawn drawn = lines_alone(Scene({sphere_object(std::move(balls))}), 3.0, 512);
+    const Drawn drawn = lines_alone(Scene({sphere_object(std::move(balls))}), 512);
     const Ink pixels = ink_of(drawn.film);
     const Ink curves = ink_of(drawn.art, 512);
     EXPECT_LT(mean_difference(pixels, curves), 0.01);

@@ -18,11 +18,12 @@ struct Polyline {
     bool left_in_front = true;  ///< which of them is nearer to the viewer
     bool hidden = false;        ///< on surfaces behind others
     bool closed = false;        ///< runs on from the last point to the first
-    double strength = 1.0;      ///< in (0, 1]; below 1 for creases of small angle
+    double strength = 1.0;      ///< mean, [0, 1]; below 1 for creases of small angle and ridges
     /// Pixels: x right, y down, from the upper left corner of the picture. Lines go on a little
     /// beyond its edges. Polylines that meet share the point exactly.
     std::vector<std::array<float, 2>> points;
-    std::vector<float> depth;  ///< of the nearer side at each point, as the AOV Z
+    std::vector<float> depth;      ///< of the nearer side at each point, as the AOV Z
+    std::vector<float> strengths;  ///< at each point; all 1 but for creases and ridges
 };
 
 }  // namespace inktrace

@@ -140,6 +140,7 @@ std::vector<Polyline> Picture::lines() const {
         line.level = chain.level;
         for (const ink::Vec2f point : chain.points) line.points.push_back({point.x, point.y});
         line.depth = chain.t;
+        line.strengths = chain.strengths;
         lines.push_back(std::move(line));
     }
     return lines;

@@ -140,6 +140,11 @@ void Connector::join_junction(std::vector<Segment>& segments) {
         segments.push_back(make_segment(ports_[0], end));
         return;
     }
+    const auto is_line = [](const Port& p) { return p.crossing->nearer != kNobody; };
+    if (ports_.size() == 3 && std::ranges::count_if(ports_, is_line) == 2) {
+        std::ranges::stable_partition(ports_, is_line);
+        return end_last_on_others(segments);
+    }
     for (const Port& owner : ports_) {
         const GeometryId front = owner.crossing->nearer;
         const auto owned = [&](const Port& p) {
@@ -147,16 +152,20 @@ void Connector::join_junction(std::vector<Segment>& segments) {
         };
         if (ports_.size() != 3 || std::ranges::count_if(ports_, owned) != 2) continue;
         std::ranges::stable_partition(ports_, owned);
-        segments.push_back(make_segment(ports_[0], ports_[1]));
-        const Segment through = segments.back();
-        segments.push_back(make_segment(
-            ports_[2], nearest_within(ports_[2].crossing->point, through.a, through.b)));
-        return;
+        return end_last_on_others(segments);
     }
     Vec2f middle;
     for (const Port& port : ports_) middle = middle + port.crossing->point;
     middle = middle * (1.0F / static_cast<float>(ports_.size()));
     for (const Port& port : ports_) segments.push_back(make_segment(port, middle));
+}
+
+/// Of three ports: the first two are one line, on which the third ends.
+void Connector::end_last_on_others(std::vector<Segment>& segments) {
+    const Segment through = make_segment(ports_[0], ports_[1]);
+    segments.push_back(through);
+    segments.push_back(
+        make_segment(ports_[2], nearest_within(ports_[2].crossing->point, through.a, through.b)));
 }
 
 /// Going clockwise round the cell, a line that enters it at `from` has what comes after that port

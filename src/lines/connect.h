@@ -11,6 +11,9 @@
 
 namespace ink {
 
+/// `nearer` of a crossing that is in front of nothing: it ends on any line that it meets.
+inline constexpr GeometryId kNobody = 0xFFFFFFFFU;
+
 /// Joins the crossings on the sides of each lattice cell into segments. Two crossings make one
 /// segment. Where more meet, lines that bound one geometry on both ends go through; a line behind
 /// ends on the one in front, and lines that meet as equals end at a junction in the middle.
@@ -34,6 +37,7 @@ class Connector {
     void join_ports(std::vector<Segment>& segments);
     bool join_best_pair(std::vector<Segment>& segments);
     void join_junction(std::vector<Segment>& segments);
+    void end_last_on_others(std::vector<Segment>& segments);
     static Segment make_segment(const Port& from, const Port& to);
     static Segment make_segment(const Port& from, Vec2f to);
 

@@ -10,9 +10,6 @@ constexpr float kShade = 0.5F;
 constexpr std::uint8_t kRight = 1;
 constexpr std::uint8_t kDown = 2;
 
-/// An ID that no line has: as it is in front of nothing, a border of tones ends on lines.
-constexpr GeometryId kNobody = 0xFFFFFFFFU;
-
 std::size_t second_end(const SampleGrid& grid, int i, int j, bool down) {
     return down ? grid.index(i, j + 1) : grid.index(i + 1, j);
 }

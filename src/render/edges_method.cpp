@@ -238,7 +238,7 @@ FoundLines find_lines(const Edges& edges, WorkLoop& loop, RenderStats& stats) {
     });
 
     if (edges.find_lines && edges.wanted.has(LineType::self_occlusion)) {
-        stats += mend_lines(edges, found.tiles);
+        stats += mend_lines(edges, found.tiles, found.toned);
     }
     found.thinning = thinning_of(edges, finders);
     stats += total_of(finders);

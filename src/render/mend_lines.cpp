@@ -2,14 +2,42 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <set>
+#include <span>
 #include <utility>
 
 #include "lines/folds.h"
+#include "lines/tones.h"
 #include "render/line_finder.h"
 
 namespace ink {
 
-RenderStats mend_lines(const Edges& edges, std::vector<std::vector<ColoredSegment>>& found) {
+namespace {
+
+/// The same in the lines that light and shade are told apart by. A crumb may hang on another line,
+/// so that only a segment both of whose ends are a crumb's is part of one.
+void repair(const Edges& edges, const FoldRepairs& repairs, std::span<const Segment> lines,
+            std::vector<std::vector<Segment>>& toned) {
+    std::set<std::pair<float, float>> ends;
+    for (const std::size_t k : repairs.crumbs) {
+        for (const Vec2f end : {lines[k].a, lines[k].b}) ends.insert({end.x, end.y});
+    }
+    const auto is_crumb = [&](const Segment& segment) {
+        return segment.type == LineType::self_occlusion &&
+               ends.contains({segment.a.x, segment.a.y}) &&
+               ends.contains({segment.b.x, segment.b.y});
+    };
+    for (std::vector<Segment>& tile : toned) std::erase_if(tile, is_crumb);
+    for (Segment bridge : repairs.bridges) {
+        Tones::double_ids(bridge);
+        toned[edges.search_tile_at((bridge.a + bridge.b) * 0.5F)].push_back(bridge);
+    }
+}
+
+}  // namespace
+
+RenderStats mend_lines(const Edges& edges, std::vector<std::vector<ColoredSegment>>& found,
+                       std::vector<std::vector<Segment>>& toned) {
     RenderStats stats;
     const Timer timer(stats.lines_ms);
     const auto is_fold = [](const ColoredSegment& line) {
@@ -37,6 +65,7 @@ RenderStats mend_lines(const Edges& edges, std::vector<std::vector<ColoredSegmen
                        finder.enter({low.x, low.y, high.x, high.y});
                    });
     stats.rays = finder.stats().rays;
+    if (edges.tones) repair(edges, repairs, lines, toned);
     // Last first, so that the places of the others stay what they are.
     for (auto k = repairs.crumbs.rbegin(); k != repairs.crumbs.rend(); ++k) {
         const auto [tile, index] = places[*k];

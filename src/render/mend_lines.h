@@ -8,6 +8,7 @@ namespace ink {
 
 /// Joins and drops pieces of self-occlusions (mend_folds) among the lines found in all tiles.
 /// Returns what that took.
-RenderStats mend_lines(const Edges& edges, std::vector<std::vector<ColoredSegment>>& found);
+RenderStats mend_lines(const Edges& edges, std::vector<std::vector<ColoredSegment>>& found,
+                       std::vector<std::vector<Segment>>& toned);
 
 }  // namespace ink

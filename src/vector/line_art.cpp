@@ -1,14 +1,14 @@
 #include "vector/line_art.h"
 
 #include <algorithm>
-#include <array>
 #include <iterator>
 #include <utility>
 
 #include "lines/fit_chains.h"
 #include "lines/junctions.h"
-#include "lines/tones.h"
+#include "vector/region_colors.h"
 #include "vector/regions.h"
+#include "vector/tone_lines.h"
 
 namespace ink {
 
@@ -48,14 +48,9 @@ int last_level(const Drawing& drawing) {
 /// miss themselves, for rounding, and for renderers, which flatten curves.
 constexpr double kFitShare = 0.5;
 
-/// Lines that may be joined, as curves.
-struct Layer {
-    ChainGraph graph;
-    std::vector<Curve> curves;
-};
-
-Layer curves_of(const std::vector<Segment>& segments, float spacing, const Settings& settings) {
-    Layer layer;
+CurveGraph curves_of(const std::vector<Segment>& segments, float spacing,
+                     const Settings& settings) {
+    CurveGraph layer;
     layer.graph = chain_segments(segments, spacing);
     place_junctions(layer.graph, spacing);
     layer.curves = fit_chains(layer.graph, {.tolerance = kFitShare * settings.curve_tolerance_px},
@@ -63,16 +58,13 @@ Layer curves_of(const std::vector<Segment>& segments, float spacing, const Setti
     return layer;
 }
 
-bool is_border_of_tones(const Chain& chain) {
-    return std::ranges::all_of(chain.strengths, [](float strength) { return strength == 0.0F; });
-}
-
 /// Moves the lines that were asked for into the drawing, with their styles.
-void add_lines(const Settings& settings, const LineThinning& thinning, Layer layer, LineArt& art) {
+void add_lines(const Settings& settings, const LineThinning& thinning, CurveGraph layer,
+               LineArt& art) {
     const double shortest = settings.min_length.pixels(settings.dpi, settings.size.height);
     for (std::size_t k = 0; k < layer.graph.chains.size(); ++k) {
         Chain& chain = layer.graph.chains[k];
-        if (!settings.lines.has(chain.type) || is_border_of_tones(chain)) continue;
+        if (!settings.lines.has(chain.type)) continue;
         const double least = chain.hidden ? std::max(shortest, kShortestHidden) : shortest;
         const double size = least > 0.0 ? length_of(chain) : 0.0;
         if (size < least) continue;
@@ -95,31 +87,6 @@ void add_lines(const Settings& settings, const LineThinning& thinning, Layer lay
     }
 }
 
-/// Spots of light or shade this small, by the length round them in pixels, are left out.
-constexpr double kLeastSpot = 16.0;
-
-/// Without its curve, a line bounds no region.
-void drop_specks(Layer& layer) {
-    for (std::size_t k = 0; k < layer.graph.chains.size(); ++k) {
-        const Chain& chain = layer.graph.chains[k];
-        if (chain.closed && is_border_of_tones(chain) && length_of(chain) < kLeastSpot) {
-            layer.curves[k].pieces.clear();
-        }
-    }
-}
-
-/// Turns tones on the sides of lines into geometries again.
-void name_tones(std::vector<Chain>& chains, std::vector<Region>& regions) {
-    for (Chain& chain : chains) {
-        chain.left = Tones::geometry(chain.left);
-        chain.right = Tones::geometry(chain.right);
-    }
-    for (Region& region : regions) {
-        region.tone = Tones::shaded(region.id) ? Region::Tone::shade : Region::Tone::light;
-        region.id = Tones::geometry(region.id);
-    }
-}
-
 }  // namespace
 
 LineArt make_line_art(const Scene& scene, const Settings& settings, const Drawing& drawing,
@@ -132,15 +99,18 @@ LineArt make_line_art(const Scene& scene, const Settings& settings, const Drawin
     art.names = GeometryNames(scene, settings.ids);
 
     const int levels = last_level(drawing) + 1;
-    Layer direct =
+    CurveGraph direct =
         curves_of(levels == 1 ? drawing.segments : of_level(drawing, 0), drawing.spacing, settings);
     const Fill fill = settings.compose == Compose::lines ? Fill::none : settings.fill;
-    if (drawing.tones) drop_specks(direct);
+    if (drawing.tones) drop_spots(direct);
     if (fill == Fill::flat || fill == Fill::two_tone) {
         art.regions = make_regions(direct.graph, direct.curves, drawing.lower, drawing.upper);
         color_regions(art.regions, image, settings.threads);
     }
-    if (drawing.tones) name_tones(direct.graph.chains, art.regions);
+    if (drawing.tones) {
+        name_tones(art.regions);
+        name_tones(direct);
+    }
     if (fill == Fill::image) art.image = image;
 
     if (!settings.draws_lines()) return art;
@@ -153,59 +123,6 @@ LineArt make_line_art(const Scene& scene, const Settings& settings, const Drawin
     add_lines(settings, drawing.thinning, curves_of(drawing.hidden, drawing.spacing, settings),
               art);
     return art;
-}
-
-namespace {
-
-/// From the bottom up: outlines are the strongest statement and go on top.
-constexpr std::array<LineType, kLineTypes> kOrder{
-    LineType::mesh,           LineType::ridge,    LineType::crease,    LineType::intersection,
-    LineType::self_occlusion, LineType::boundary, LineType::silhouette};
-
-bool same_ink(const StrokeStyle& a, const StrokeStyle& b) {
-    return a.color == b.color && a.opacity == b.opacity;
-}
-
-template <class Belongs>
-LineLayer make_layer(const LineArt& art, std::string_view name, const Belongs& belongs) {
-    LineLayer layer;
-    layer.name = name;
-    for (std::size_t k = 0; k < art.strokes.size(); ++k) {
-        if (belongs(art.chains[art.strokes[k].chain])) layer.strokes.push_back(k);
-    }
-    if (layer.strokes.empty()) return layer;
-    const auto style = [&](std::size_t k) { return art.styles[art.strokes[k].chain]; };
-    layer.usual = style(layer.strokes.front());
-    if (std::ranges::all_of(layer.strokes,
-                            [&](std::size_t k) { return same_ink(style(k), layer.usual); })) {
-        layer.opacity = layer.usual.opacity;
-    }
-    std::ranges::stable_sort(layer.strokes, std::ranges::greater{}, [&](std::size_t k) {
-        return art.chains[art.strokes[k].chain].t.front();
-    });
-    return layer;
-}
-
-}  // namespace
-
-LineLayers layers_of(const LineArt& art) {
-    LineLayers all;
-    const auto add = [&](LineLayer layer) {
-        if (!layer.strokes.empty()) all.layers.push_back(std::move(layer));
-    };
-    add(make_layer(art, "hidden", [](const Chain& chain) { return chain.hidden; }));
-    for (const LineType type : kOrder) {
-        add(make_layer(art, name_of(type),
-                       [type](const Chain& chain) { return chain.type == type && !chain.hidden; }));
-    }
-    const bool alike = std::ranges::all_of(all.layers, [&](const LineLayer& layer) {
-        return layer.opacity && same_ink(layer.usual, all.layers.front().usual);
-    });
-    if (alike && !all.layers.empty()) {
-        all.opacity = all.layers.front().usual.opacity;
-        for (LineLayer& layer : all.layers) layer.opacity = 1.0;
-    }
-    return all;
 }
 
 }  // namespace ink

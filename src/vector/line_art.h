@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -43,23 +42,6 @@ struct LineArt {
     std::vector<Stroke> strokes;                ///< chain after chain
     GeometryNames names;
 };
-
-/// Strokes of one kind, drawn together.
-struct LineLayer {
-    std::string_view name;             ///< of the type, or "hidden"
-    std::vector<std::size_t> strokes;  ///< from the farthest to the nearest
-    StrokeStyle usual;                 ///< of the first
-    /// Of all alike, which then does not add up where they overlap; nothing: each has its own.
-    std::optional<double> opacity;
-};
-
-/// From the bottom up; none is empty. `opacity` is that of all layers, if they are equally opaque
-/// and of one colour; theirs is 1 then.
-struct LineLayers {
-    std::vector<LineLayer> layers;
-    double opacity = 1.0;
-};
-LineLayers layers_of(const LineArt& art);
 
 /// Regions reach this far below their neighbours, or a renderer that smooths the two edges one
 /// after the other lets the background shine through between them.

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "io/image_writers.h"
+#include "vector/line_layers.h"
 #include "vector/xml_text.h"
 
 namespace ink {

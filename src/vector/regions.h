@@ -16,8 +16,4 @@ namespace ink {
 std::vector<Region> make_regions(const ChainGraph& graph, std::span<const Curve> curves,
                                  Vec2f lower, Vec2f upper);
 
-/// Gives each region the mean of the pixels whose centres it covers, taken in linear light; one
-/// that covers none, that of the nearest pixel.
-void color_regions(std::span<Region> regions, const DisplayImage& image, int threads);
-
 }  // namespace ink

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "io/image_writers.h"
+#include "vector/line_layers.h"
 #include "vector/xml_text.h"
 
 namespace ink {
