@@ -5,6 +5,7 @@
 #include <cstring>
 #include <variant>
 
+#include "base/multiversion.h"
 #include "base/parallel.h"
 
 namespace ink {
@@ -19,6 +20,20 @@ void copy_row(const T* from, int count, T* to) {
     } else {
         std::copy_n(from, count, to);
     }
+}
+
+/// Numbers of the triangles that a packet hit, of one object, whose first triangle has number
+/// `first`. False if it hit another object, too.
+INKTRACE_MULTIVERSION
+bool number_one_object(const HitPacket& hits, std::uint32_t object, std::uint32_t first,
+                       Lanes<std::uint32_t>& numbers) {
+    std::uint32_t others = 0;
+    for (int i = 0; i < kLanes; ++i) {
+        const bool own = hits.object[i] == object;
+        numbers[i] = own ? first + hits.primitive[i] : FaceMap::kNone;
+        others |= own || hits.object[i] == kNoObject ? 0U : 1U;
+    }
+    return others == 0;
 }
 
 }  // namespace
@@ -79,7 +94,11 @@ void FaceMap::put(int x, int y, const HitPacket& hits) {
     const int rows = std::min(kBlockSide, size_.height - y);
     if (columns <= 0) return;
     Lanes<std::uint32_t> numbers;
-    for (int i = 0; i < kLanes; ++i) numbers[i] = number(hits, i);
+    const std::uint32_t object = hits.object[0];
+    const bool mesh = object != kNoObject && meshes_[object] != nullptr;
+    if (!mesh || !number_one_object(hits, object, first_[object], numbers)) {
+        for (int i = 0; i < kLanes; ++i) numbers[i] = number(hits, i);
+    }
     for (int row = 0; row < rows; ++row) {
         const auto first = static_cast<std::size_t>(row * kBlockSide);
         copy_row(numbers.data() + first, columns, triangles_.data() + pixel(x, y + row));
