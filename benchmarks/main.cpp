@@ -47,6 +47,7 @@ struct Row {
     std::string what;
     double median_ms;
     double in_r;  ///< median over rounds of time / R of the same round
+    RenderStats fastest;
 };
 
 struct Result {
@@ -60,84 +61,150 @@ struct Variant {
     Settings settings;
 };
 
-std::vector<Variant> variants(Size size, int most_threads, bool stencils) {
+/// What is measured of a scene.
+struct Plan {
+    int side = 1024;
+    int rounds = 7;
+    int threads = 2;
+    bool stencils = true;
+    std::vector<std::string> only;  ///< rows of these names; empty: all
+};
+
+std::vector<Variant> variants(const Plan& plan) {
+    std::vector<Variant> list;
+    const auto add = [&](std::string name, const Settings& settings) {
+        if (!plan.only.empty() && std::ranges::find(plan.only, name) == plan.only.end()) return;
+        list.push_back({std::move(name), settings});
+    };
     Settings plain;
-    plain.size = size;
+    plain.size = {plan.side, plan.side};
     plain.threads = 1;
     plain.lines = {};
-    std::vector<Variant> list{{"no lines", plain}};
+    add("no lines", plain);
     Settings threaded = plain;
-    threaded.threads = most_threads;
-    list.push_back({fmt::format("no lines, {} threads", most_threads), threaded});
+    threaded.threads = plan.threads;
+    add(fmt::format("no lines, {} threads", plan.threads), threaded);
     for (const double width : {2.0, 8.0}) {
         Settings lines = plain;
         lines.lines = LineTypes::usual();
         lines.line_width.value = width;
-        list.push_back({fmt::format("edges, {} px", width), lines});
+        add(fmt::format("edges, {} px", width), lines);
+        threaded = lines;
+        threaded.threads = plan.threads;
+        add(fmt::format("edges, {} px, {} threads", width, plan.threads), threaded);
+        lines.lines = LineTypes::all();
+        add(fmt::format("edges, {} px, all types", width), lines);
     }
-    for (int rings = 1; stencils && rings <= 3; ++rings) {
+    for (int rings = 1; plan.stencils && rings <= 3; ++rings) {
         Settings lines = plain;
         lines.lines = LineTypes::usual();
         lines.line_width.value = 2.0;
         lines.method = Method::stencil;
         lines.rings = rings;
-        list.push_back({fmt::format("stencil, N = {}", rings), lines});
+        add(fmt::format("stencil, N = {}", rings), lines);
     }
     return list;
 }
 
 /// Rounds of R and every variant in turn, so that a machine that slows down slows all alike.
-Result measure(const NamedScene& named, Size size, int rounds, int threads, bool stencils) {
+Result measure(const NamedScene& named, const Plan& plan) {
     const Scene scene(named.objects);
     const auto tracer = make_tracer(scene);
     const BareLoop bare(scene);
-    const std::vector<Variant> list = variants(size, threads, stencils);
-    const Camera camera(scene, list[0].settings.view, size);
-    const BareLoop::Pinhole rays = pinhole(scene, camera, list[0].settings);
+    const std::vector<Variant> list = variants(plan);
+    Settings whole;
+    whole.size = {plan.side, plan.side};
+    const Camera camera(scene, whole.view, whole.size);
+    const BareLoop::Pinhole rays = pinhole(scene, camera, whole);
 
     std::vector<double> r;
     std::vector<std::vector<double>> times(list.size());
     std::vector<std::vector<double>> ratios(list.size());
-    for (int round = 0; round <= rounds; ++round) {
+    std::vector<RenderStats> fastest(list.size());
+    for (int round = 0; round <= plan.rounds; ++round) {
         std::size_t hits = 0;
         // The faster of two: a cold start is not what the loop costs.
         const double loop = std::min(bare.run(rays, hits), bare.run(rays, hits));
         if (round > 0) r.push_back(loop);
         for (std::size_t k = 0; k < list.size(); ++k) {
-            RenderStats stats;
-            double best = 1e30;
+            RenderStats best;
+            best.render_ms = 1e30;
             const int tries = list[k].settings.method == Method::edges ? 2 : 1;
             for (int i = 0; i < tries; ++i) {
+                RenderStats stats;
                 render(scene, *tracer, list[k].settings, {}, {}, &stats);
-                best = std::min(best, stats.render_ms);
+                if (stats.render_ms < best.render_ms) best = stats;
             }
             if (round == 0) continue;  // warms caches and the clock
-            times[k].push_back(best);
-            ratios[k].push_back(best / loop);
+            times[k].push_back(best.render_ms);
+            ratios[k].push_back(best.render_ms / loop);
+            if (round == 1 || best.render_ms < fastest[k].render_ms) fastest[k] = best;
         }
     }
     Result result{named.name, median(r), {}};
     for (std::size_t k = 0; k < list.size(); ++k) {
-        result.rows.push_back({list[k].name, median(times[k]), median(ratios[k])});
+        result.rows.push_back({list[k].name, median(times[k]), median(ratios[k]), fastest[k]});
     }
     return result;
 }
 
-void print(const Result& result) {
+/// FILE or, for a biological assembly of it, FILE@ASSEMBLY.
+NamedScene read_scene(const std::string& name) {
+    const std::size_t at = name.rfind('@');
+    ReadOptions options;
+    if (at != std::string::npos) options.data.assembly = name.substr(at + 1);
+    return {name, read_file(name.substr(0, at), options).objects};
+}
+
+/// Where the time of a frame goes.
+std::vector<std::pair<const char*, double>> phases(const RenderStats& stats) {
+    const double found = stats.detect_ms + stats.locate_ms + stats.connect_ms + stats.ridges_ms;
+    const double drawn = stats.ink_ms + stats.blend_ms;
+    return {{"trace", stats.trace_ms},
+            {"shade", stats.shade_ms - stats.film_ms},
+            {"film", stats.film_ms},
+            {"detect", stats.detect_ms},
+            {"locate", stats.locate_ms},
+            {"connect", stats.connect_ms},
+            {"ridges", stats.ridges_ms},
+            {"ink", stats.ink_ms},
+            {"blend", stats.blend_ms},
+            {"other lines", stats.lines_ms - found - drawn},
+            {"rest", stats.render_ms - stats.trace_ms - stats.shade_ms - stats.lines_ms}};
+}
+
+void print_phases(const RenderStats& stats) {
+    fmt::print("    {:.2f} ms:", stats.render_ms);
+    for (const auto& [name, ms] : phases(stats)) {
+        if (ms >= 0.005) fmt::print("  {} {:.2f}", name, ms);
+    }
+    fmt::print("; {} rays, {} crossings\n", stats.rays, stats.crossings);
+}
+
+void print(const Result& result, bool with_phases) {
     fmt::print("{}\n  {:<28}{:>9.2f} ms\n", result.scene, "R (bare rtcIntersect16 loop)",
                result.r_ms);
     for (const Row& row : result.rows) {
-        fmt::print("  {:<28}{:>9.2f} ms {:>8.2f} R\n", row.what, row.median_ms, row.in_r);
+        fmt::print("  {:<28}{:>9.2f} ms {:>8.3f} R", row.what, row.median_ms, row.in_r);
+        const auto alone = std::ranges::find_if(result.rows, [&](const Row& other) {
+            return row.what.starts_with(other.what + ", ") && row.what.ends_with(" threads");
+        });
+        if (alone != result.rows.end()) {
+            fmt::print("   {:.2f} x as fast", alone->median_ms / row.median_ms);
+        }
+        fmt::print("\n");
+        if (with_phases) print_phases(row.fastest);
     }
-    fmt::print("  {:<28}{:>9.2f} x\n\n", "speed-up by threads",
-               result.rows[0].median_ms / result.rows[1].median_ms);
+    fmt::print("\n");
     std::fflush(stdout);
 }
 
 nlohmann::ordered_json to_json(const Result& result) {
     nlohmann::ordered_json json{{"scene", result.scene}, {"r_ms", result.r_ms}};
     for (const Row& row : result.rows) {
-        json["rows"].push_back({{"what", row.what}, {"ms", row.median_ms}, {"r", row.in_r}});
+        nlohmann::ordered_json own{{"what", row.what}, {"ms", row.median_ms}, {"r", row.in_r}};
+        for (const auto& [name, ms] : phases(row.fastest)) own["phases_ms"][name] = ms;
+        json["rows"].push_back(own);
     }
     return json;
 }
@@ -184,17 +251,20 @@ int main(int argc, char** argv) {
     CLI::App app("Measures whole frames in units of R, the time of a bare tracing loop.");
     std::vector<std::string> files;
     std::string json_file;
-    int side = 1024;
-    int rounds = 7;
-    int threads = 2;
-    bool stencils = true;
+    Plan plan;
+    bool built_in = true;
+    bool with_phases = false;
     double readers_mb = 0.0;
-    app.add_option("FILE", files, "Scenes to measure beside the built-in ones");
+    app.add_option("FILE", files,
+                   "Scenes to measure beside the built-in ones; FILE@1: its assembly 1");
     app.add_option("--json", json_file, "Write the results as JSON");
-    app.add_option("--side", side, "Pixels of the square picture's side [1024]");
-    app.add_option("--rounds", rounds, "Rounds to take the median of [7]");
-    app.add_option("--threads", threads, "Threads to compare with one [2]");
-    app.add_flag("!--no-stencils", stencils, "Only frames without lines");
+    app.add_option("--side", plan.side, "Pixels of the square picture's side [1024]");
+    app.add_option("--rounds", plan.rounds, "Rounds to take the median of [7]");
+    app.add_option("--threads", plan.threads, "Threads to compare with one [2]");
+    app.add_option("--only", plan.only, "Only rows of these names, as 'edges, 2 px'");
+    app.add_flag("--phases", with_phases, "Where the time of the fastest frame of each row goes");
+    app.add_flag("!--no-stencils", plan.stencils, "Only frames of method edges");
+    app.add_flag("!--no-built-in", built_in, "Only the files");
     app.add_option("--readers", readers_mb,
                    "Measure reading files of this many megabytes instead, one of each format")
         ->check(CLI::Range(1.0, 4000.0));
@@ -206,7 +276,7 @@ int main(int argc, char** argv) {
     app.add_flag("--tracers", tracers,
                  "Measure instead the same frames with and without Embree for camera rays");
     CLI11_PARSE(app, argc, argv);
-    if (tracers) return compare_tracers(files, side, rounds);
+    if (tracers) return compare_tracers(files, plan.side, plan.rounds);
     if (readers_mb > 0.0) {
         for (const ReaderRow& row : measure_readers(readers_mb)) {
             fmt::print("{:<10}{:>8.1f} MB{:>9.0f} MB/s\n", row.format, row.megabytes,
@@ -215,22 +285,24 @@ int main(int argc, char** argv) {
         }
         return 0;
     }
-    if (sessions) return run_sessions(files, side, rounds, flags);
+    if (sessions) return run_sessions(files, plan.side, plan.rounds, flags);
 
     std::vector<NamedScene> scenes;
     try {
-        for (const std::string& file : files) scenes.push_back({file, read_file(file).objects});
+        for (const std::string& file : files) scenes.push_back(read_scene(file));
     } catch (const std::exception& error) {
         fmt::print(stderr, "{}\n", error.what());
         return 1;
     }
-    scenes.push_back(bumpy_sphere(6));
-    scenes.push_back(random_spheres(1'000'000));
+    if (built_in) {
+        scenes.push_back(bumpy_sphere(6));
+        scenes.push_back(random_spheres(1'000'000));
+    }
 
     auto json = nlohmann::ordered_json::array();
     for (const NamedScene& scene : scenes) {
-        const Result result = measure(scene, {side, side}, rounds, threads, stencils);
-        print(result);
+        const Result result = measure(scene, plan);
+        print(result, with_phases);
         json.push_back(to_json(result));
     }
     if (!json_file.empty()) std::ofstream(json_file) << json.dump(2) << '\n';

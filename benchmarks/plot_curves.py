@@ -123,7 +123,8 @@ def main():
     results = json.loads(pathlib.Path(sys.argv[1]).read_text())
     folder = pathlib.Path(sys.argv[2])
     folder.mkdir(parents=True, exist_ok=True)
-    write(folder / "frontier.svg", frontier(results["frontier"]))
+    if results["frontier"]:
+        write(folder / "frontier.svg", frontier(results["frontier"]))
     if results["growth"]:
         write(folder / "growth.svg", growth(results["growth"]))
 

@@ -1,9 +1,13 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <optional>
 #include <random>
+#include <vector>
 
+#include "lines/predict_lanes.h"
 #include "lines_world.h"
 
 namespace ink::test {
@@ -92,6 +96,89 @@ TEST(PredictedCrossings, AreThoseThatBisectionFinds) {
     // Slivers within one lattice edge may be seen by one and missed by the other.
     EXPECT_LE(apart, predicted.crossings.size() / 100);
     EXPECT_LT(2 * predicted.samples, bisected.samples);
+}
+
+/// What the ray through a screen point sees of some balls, from nearby and in perspective.
+Sample see(const Viewpoint& viewpoint, const std::vector<Ball>& balls, Vec2f point) {
+    const Vec3d origin = viewpoint.origin(point);
+    const Vec3d direction = normalize(viewpoint.direction(point));
+    Sample sample;
+    double nearest = 1e30;
+    for (std::size_t k = 0; k < balls.size(); ++k) {
+        const Vec3d to_centre = to_double(balls[k].centre) - origin;
+        const double along = dot(to_centre, direction);
+        const double radius = balls[k].radius;
+        const double inside = radius * radius - dot(to_centre, to_centre) + along * along;
+        if (inside <= 0.0 || along - std::sqrt(inside) >= nearest) continue;
+        nearest = along - std::sqrt(inside);
+        sample.id = static_cast<GeometryId>(k + 1);
+        sample.ball = balls[k];
+        sample.t = static_cast<float>(nearest);
+    }
+    return sample;
+}
+
+TEST(PredictedLanes, SayWhatIsPredictedOfOneEdgeAtATime) {
+    Viewpoint viewpoint;
+    viewpoint.eye = {0, 0, -1};
+    viewpoint.origin = {{-0.5, 0.5, 0}, {1.0 / 64, 0, 0}, {0, -1.0 / 64, 0}};
+    viewpoint.direction = {{-0.5, 0.5, 1}, {1.0 / 64, 0, 0}, {0, -1.0 / 64, 0}};
+    std::mt19937 random(3);
+    std::uniform_real_distribution<float> place(-0.6F, 0.6F);
+    std::uniform_real_distribution<float> size(0.02F, 0.3F);
+    std::array<int, 6> seen{};
+    for (int round = 0; round < 200; ++round) {
+        std::vector<Ball> balls;
+        for (int k = 0; k < 8; ++k) {
+            const float x = place(random);
+            const float y = place(random);
+            balls.push_back({{x, y, 0.8F + 0.3F * place(random)}, size(random)});
+        }
+        EdgeLanes lanes{};
+        std::vector<std::optional<Prediction>> alone;
+        for (int tries = 0; alone.size() < kLanes && tries < 5000; ++tries) {
+            const Vec2f a{32.0F + 40.0F * place(random), 32.0F + 40.0F * place(random)};
+            const bool down = random() % 2 == 0;
+            const Vec2f b{a.x + (down ? 0.0F : 1.0F), a.y + (down ? 1.0F : 0.0F)};
+            const Sample at_a = see(viewpoint, balls, a);
+            const Sample at_b = see(viewpoint, balls, b);
+            if (at_a.ball == at_b.ball) continue;
+            const auto lane = static_cast<int>(alone.size());
+            alone.push_back(predict_crossing(viewpoint, a, at_a, b, at_b));
+            lanes.ax[lane] = a.x;
+            lanes.ay[lane] = a.y;
+            lanes.bx[lane] = b.x;
+            lanes.by[lane] = b.y;
+            const auto put = [&](const Sample& sample, BallLanes& to) {
+                to.x[lane] = sample.ball.centre.x;
+                to.y[lane] = sample.ball.centre.y;
+                to.z[lane] = sample.ball.centre.z;
+                to.radius[lane] = sample.ball.radius;
+                to.t[lane] = sample.t;
+            };
+            put(at_a, lanes.first);
+            put(at_b, lanes.second);
+        }
+        PredictionLanes together;
+        predict_crossings(viewpoint, lanes, together);
+        for (int lane = 0; lane < static_cast<int>(alone.size()); ++lane) {
+            const std::optional<Prediction>& one = alone[static_cast<std::size_t>(lane)];
+            const std::int32_t kind = together.kind[lane];
+            ++seen[static_cast<std::size_t>(kind + 2)];
+            if (kind == PredictionLanes::kSearch) continue;
+            EXPECT_EQ(kind, one ? static_cast<std::int32_t>(one->kind) : PredictionLanes::kNone);
+            if (!one || kind < 0) continue;
+            EXPECT_NEAR(together.at[lane], one->at, 1e-6);
+            EXPECT_NEAR(together.t[lane], one->t, 1e-6);
+            EXPECT_NEAR(together.squared_radius[lane], one->squared_radius,
+                        1e-5F * one->squared_radius);
+        }
+    }
+    // Limbs on both sides, seams, and few that must be searched.
+    EXPECT_GT(seen[2], 500);
+    EXPECT_GT(seen[3], 500);
+    EXPECT_GT(seen[4], 200);
+    EXPECT_LT(seen[0], 50);
 }
 
 TEST(PredictedSeam, WithinOneGeometryIsACrease) {

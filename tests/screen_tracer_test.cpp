@@ -97,6 +97,11 @@ class Seen {
         tracer.intersect(rays(points), hits, coherence);
         return hits;
     }
+    std::unique_ptr<TileTracer> tile_tracer() const {
+        auto tracer = frame_->tile_tracer();
+        tracer->enter(whole());
+        return tracer;
+    }
     ScreenBox whole() const {
         return {0, 0, static_cast<float>(size_.width), static_cast<float>(size_.height)};
     }
@@ -337,6 +342,61 @@ TEST(ScreenTracer, GivesTheSameBitsOnEveryInstructionSet) {
     }
     hwy::SetSupportedTargetsForTest(0);
     EXPECT_GE(sets, 1);
+}
+
+/// Points of a box, with its corners.
+std::vector<PointPacket> points_in(const ScreenBox& box, std::mt19937& random) {
+    std::vector<PointPacket> points(4);
+    for (PointPacket& packet : points) {
+        for (int i = 0; i < kLanes; ++i) {
+            const bool corner = i < 4;
+            const float x = corner ? static_cast<float>(i % 2) : uniform(random);
+            const float y = corner ? static_cast<float>(i / 2) : uniform(random);
+            packet.x[i] = box.left + x * (box.right - box.left);
+            packet.y[i] = box.top + y * (box.bottom - box.top);
+        }
+    }
+    return points;
+}
+
+TEST(ScreenTracer, SaysOfNoBallThatItCoversWhatAnyRayMisses) {
+    std::mt19937 random(12);
+    std::vector<Sphere> spheres;
+    for (int i = 0; i < 60; ++i) {
+        spheres.push_back({uniform_point(random), 0.05F + 0.2F * uniform(random)});
+    }
+    ViewSettings parallel;
+    parallel.orthographic = 0.0;
+    ViewSettings wide;
+    wide.fov_deg = 70.0;
+    for (const ViewSettings& view : {ViewSettings{}, parallel, wide}) {
+        const Seen seen({sphere_object(spheres)}, view, kSmall);
+        const auto tracer = seen.tile_tracer();
+        int covered = 0;
+        int could_be = 0;
+        for (int n = 0; n < 2000; ++n) {
+            const float left = 122.0F * uniform(random);
+            const float top = 122.0F * uniform(random);
+            const ScreenBox box{left, top, left + 5.0F, top + 5.0F};
+            const std::vector<PointPacket> points = points_in(box, random);
+            const std::vector<HitPacket> hits = seen.trace_brute_force(points);
+            const std::uint32_t object = hits[0].object[0];
+            const std::uint32_t primitive = hits[0].primitive[0];
+            if (object == kNoObject) continue;
+            bool all = true;
+            for (const HitPacket& packet : hits) {
+                for (int i = 0; i < kLanes; ++i) {
+                    all &= packet.object[i] == object && packet.primitive[i] == primitive;
+                }
+            }
+            could_be += all ? 1 : 0;
+            if (!tracer->covers(object, primitive, box)) continue;
+            ++covered;
+            EXPECT_TRUE(all) << left << ", " << top;
+        }
+        EXPECT_GT(could_be, 300);
+        EXPECT_GT(2 * covered, could_be);  // and not only of none
+    }
 }
 
 TEST(ScreenTracer, LeavesInactiveRaysAlone) {

@@ -8,12 +8,6 @@
 
 namespace ink {
 
-/// A part of the screen and of the depth before it.
-struct Window {
-    float left, right, top, bottom;
-    float farthest;
-};
-
 /// The nearest hits so far of the rays through sixteen points.
 struct Front {
     Lanes<float> x, y;            ///< the points, q

@@ -13,6 +13,12 @@ namespace ink {
 // Screen positions here are relative to the projection's centre: q = p - centre, pixels. Depth is
 // along the axis from the plane where rays start.
 
+/// A part of the screen and of the depth before it.
+struct Window {
+    float left, right, top, bottom;
+    float farthest;
+};
+
 /// Screen bounds of sixteen things. Unused lanes are empty (left > right).
 struct BoundsPacket {
     Lanes<float> left, right, top, bottom;

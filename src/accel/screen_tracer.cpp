@@ -4,12 +4,14 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <cstring>
 #include <utility>
 #include <vector>
 
 #include "accel/bounds_pyramid.h"
 #include "accel/screen_kernels.h"
 #include "accel/screen_packets.h"
+#include "accel/sphere_range.h"
 
 namespace ink {
 
@@ -189,6 +191,7 @@ class ScreenTileTracer final : public TileTracer {
     bool reaches(const ScreenBox& box) const override {
         return candidates_.reach(view_.window(box));
     }
+    bool covers(std::uint32_t object, std::uint32_t primitive, const ScreenBox& box) override;
 
     /// Traces a square of the screen, unless that takes more than so many clusters.
     ScreenEffort probe(Vec2f corner, std::uint32_t most_clusters);
@@ -198,6 +201,8 @@ class ScreenTileTracer final : public TileTracer {
 
     void find_front(Front& front);
     void start(std::span<const PointPacket> points);
+    template <class Visit>
+    bool for_each_near(const Window& window, const Visit& visit);
     FrontRaster lay_out(const BlockRaster& raster);
     void find_fronts(const FrontRaster& raster, std::uint32_t most_clusters = kNotYet);
     std::uint32_t packet_of(std::size_t candidate);
@@ -300,6 +305,50 @@ void ScreenTileTracer::find_front(Front& front) {
             ink::intersect(view_.basis, packets_.data(), packet, front);
         }
     }
+}
+
+/// Calls `visit(packet, lane)` for the primitives whose bounds lie in the window, until it returns
+/// false, which comes back.
+template <class Visit>
+bool ScreenTileTracer::for_each_near(const Window& window, const Visit& visit) {
+    for (std::size_t k = 0;; ++k) {
+        if (k == candidates_.packets() && !candidates_.find_more(window.farthest)) return true;
+        if (!(candidates_.depth(k * kLanes) < window.farthest)) return true;
+        for (LaneBits lanes = overlap(candidates_.bounds(k), window); lanes != 0;
+             lanes &= lanes - 1) {
+            const std::size_t i = k * kLanes + static_cast<std::size_t>(std::countr_zero(lanes));
+            const ScreenPacket& packet = packets_[packet_of(i)];
+            for (LaneBits near = overlap(packet.bounds, window); near != 0; near &= near - 1) {
+                if (!visit(packet, std::countr_zero(near))) return false;
+            }
+        }
+    }
+}
+
+bool ScreenTileTracer::covers(std::uint32_t object, std::uint32_t primitive, const ScreenBox& box) {
+    Window window = view_.window(box);
+    const auto is_own = [&](const ScreenPacket& packet, int lane) {
+        return packet.object == object && packet.primitive[lane] == primitive;
+    };
+    const auto range = [&](const ScreenPacket& packet, int lane) {
+        SphereForm form;
+        std::memcpy(&form, packet.forms[static_cast<std::size_t>(lane)].data(), sizeof(form));
+        return sphere_range(view_.projection, form, window);
+    };
+    SphereRange own;
+    for_each_near(window, [&](const ScreenPacket& packet, int lane) {
+        if (!is_own(packet, lane)) return true;
+        if (packet.kind == ClusterKind::spheres) own = range(packet, lane);
+        return false;
+    });
+    if (!own.covers) return false;
+    window.farthest = own.farthest;
+    return for_each_near(window, [&](const ScreenPacket& packet, int lane) {
+        if (packet.kind != ClusterKind::spheres) return false;
+        if (is_own(packet, lane)) return true;
+        const SphereRange other = range(packet, lane);
+        return !other.reaches || other.nearest > own.farthest;
+    });
 }
 
 std::uint32_t ScreenTileTracer::packet_of(std::size_t candidate) {

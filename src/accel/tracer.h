@@ -102,6 +102,13 @@ class TileTracer {
 
     /// False only if no ray through a point of the box, which lies within the area, hits anything.
     virtual bool reaches(const ScreenBox& /*box*/) const { return true; }
+
+    /// True only if every ray through a point of the box, which lies within the area, hits that
+    /// primitive first.
+    virtual bool covers(std::uint32_t /*object*/, std::uint32_t /*primitive*/,
+                        const ScreenBox& /*box*/) {
+        return false;
+    }
 };
 
 /// The scene seen through one camera. Safe to use from many threads.

@@ -67,24 +67,6 @@ void decode(ColorPacket& c) {
     premultiply(c);
 }
 
-/// The same for colours that come from bytes, by table.
-void decode_bytes(ColorPacket& c) {
-    static const auto kTable = [] {
-        std::array<float, 256> table{};
-        for (std::size_t v = 0; v < table.size(); ++v) {
-            table[v] = srgb_decode(static_cast<float>(v) / 255.0F);
-        }
-        return table;
-    }();
-    unpremultiply(c);
-    for (Lanes<float>* channel : {&c.r, &c.g, &c.b}) {
-        for (float& value : *channel) {
-            value = kTable[static_cast<std::size_t>(std::clamp(value, 0.0F, 1.0F) * 255.0F + 0.5F)];
-        }
-    }
-    premultiply(c);
-}
-
 /// To bytes R, G, B, A with straight alpha.
 INKTRACE_MULTIVERSION
 void pack(ColorPacket& c, Lanes<std::uint32_t>& bytes) {
@@ -96,6 +78,90 @@ void pack(ColorPacket& c, Lanes<std::uint32_t>& bytes) {
         bytes[i] = static_cast<std::uint32_t>(quantize(c.r[i]) | quantize(c.g[i]) << 8 |
                                               quantize(c.b[i]) << 16) |
                    static_cast<std::uint32_t>(quantize(c.a[i])) << 24U;
+    }
+}
+
+/// Linear to display bytes in one go.
+INKTRACE_MULTIVERSION
+void encode_bytes(const ColorPacket& linear, Lanes<std::uint32_t>& bytes) {
+    ColorPacket c = linear;
+    if (!is_opaque(c)) unpremultiply(c);
+    for (int i = 0; i < kLanes; ++i) {
+        const auto quantize = [](float v) { return static_cast<std::int32_t>(v * 255.0F + 0.5F); };
+        // Polynomials may leave [0, 1] by a hair, which rounding takes back.
+        bytes[i] =
+            static_cast<std::uint32_t>(quantize(encode(c.r[i])) | quantize(encode(c.g[i])) << 8 |
+                                       quantize(encode(c.b[i])) << 16) |
+            static_cast<std::uint32_t>(quantize(std::min(std::max(c.a[i], 0.0F), 1.0F))) << 24U;
+    }
+}
+
+/// Bytes with straight alpha, premultiplied.
+INKTRACE_INLINE void unpack(const Lanes<std::uint32_t>& bytes, ColorPacket& c) {
+    constexpr float kScale = 1.0F / 255.0F;
+    const auto channel = [](std::uint32_t pixel, unsigned shift) {
+        return static_cast<float>(static_cast<std::int32_t>((pixel >> shift) & 0xFFU)) * kScale;
+    };
+    for (int i = 0; i < kLanes; ++i) c.a[i] = channel(bytes[i], 24);
+    for (int i = 0; i < kLanes; ++i) c.r[i] = channel(bytes[i], 0) * c.a[i];
+    for (int i = 0; i < kLanes; ++i) c.g[i] = channel(bytes[i], 8) * c.a[i];
+    for (int i = 0; i < kLanes; ++i) c.b[i] = channel(bytes[i], 16) * c.a[i];
+}
+
+/// `ink` is the colour times alpha.
+INKTRACE_INLINE void lay_over(const Lanes<float>& alpha, const Lanes<float>& ink,
+                              Lanes<float>& channel) {
+    for (int i = 0; i < kLanes; ++i) channel[i] = channel[i] * (1.0F - alpha[i]) + ink[i];
+}
+
+INKTRACE_MULTIVERSION
+void lay_ink(const Film::BlockInk& ink, ColorPacket& colors) {
+    std::size_t channel = 0;
+    Lanes<float> own;
+    for (auto* lanes : {&colors.r, &colors.g, &colors.b}) {
+        if (ink.color) {
+            const std::array<float, 3> color{ink.color->r, ink.color->g, ink.color->b};
+            for (int i = 0; i < kLanes; ++i) own[i] = ink.alpha[i] * color[channel];
+        } else {
+            std::copy_n(ink.colors[channel], kLanes, own.data());
+        }
+        lay_over(ink.alpha, own, *lanes);
+        ++channel;
+    }
+    lay_over(ink.alpha, ink.alpha, colors.a);
+}
+
+/// Keeps what is below where there is no ink: through colours and back it might be rounded.
+INKTRACE_MULTIVERSION
+void lay_ink(const Film::BlockInk& ink, Lanes<std::uint32_t>& bytes) {
+    ColorPacket c;
+    unpack(bytes, c);
+    const Color color = ink.color.value_or(Color{});
+    if (ink.color) {
+        for (int i = 0; i < kLanes; ++i) {
+            const float alpha = ink.alpha[i];
+            c.r[i] = c.r[i] * (1.0F - alpha) + alpha * color.r;
+            c.g[i] = c.g[i] * (1.0F - alpha) + alpha * color.g;
+            c.b[i] = c.b[i] * (1.0F - alpha) + alpha * color.b;
+        }
+    } else {
+        for (int i = 0; i < kLanes; ++i) {
+            const float clear = 1.0F - ink.alpha[i];
+            c.r[i] = c.r[i] * clear + ink.colors[0][i];
+            c.g[i] = c.g[i] * clear + ink.colors[1][i];
+            c.b[i] = c.b[i] * clear + ink.colors[2][i];
+        }
+    }
+    lay_over(ink.alpha, ink.alpha, c.a);
+    unpremultiply(c);
+    for (int i = 0; i < kLanes; ++i) {
+        const auto quantize = [](float v) {
+            return static_cast<std::int32_t>(std::min(std::max(v, 0.0F), 1.0F) * 255.0F + 0.5F);
+        };
+        const auto mixed = static_cast<std::uint32_t>(quantize(c.r[i]) | quantize(c.g[i]) << 8 |
+                                                      quantize(c.b[i]) << 16) |
+                           static_cast<std::uint32_t>(quantize(c.a[i])) << 24U;
+        bytes[i] = ink.alpha[i] != 0.0F ? mixed : bytes[i];
     }
 }
 
@@ -117,7 +183,7 @@ void accumulate(const ColorPacket& shaded, const ColorPacket& blend_space,
 
 /// The mean shaded colour (in the blend space), less what the ink hides, plus the ink.
 INKTRACE_MULTIVERSION
-void lay_ink(const PixelSums& sums, Color line, ColorPacket& colors) {
+void lay_mean_ink(const PixelSums& sums, Color line, ColorPacket& colors) {
     const float weight = 1.0F / static_cast<float>(sums.samples);
     for (int i = 0; i < kLanes; ++i) {
         const float ink = sums.ink[i] * weight;
@@ -151,6 +217,24 @@ void copy_block(Size size, int x, int y, const Lanes<T>& block, T* plane) {
         std::copy_n(from, std::min(kBlockSide, size.width - x), row);
         row += width;
         from += kBlockSide;
+    }
+}
+
+/// The other way; pixels beyond the film's edge are left as they are.
+template <class T>
+void load_block(Size size, int x, int y, const T* plane, Lanes<T>& block) {
+    const auto width = static_cast<std::size_t>(size.width);
+    const T* row = plane + static_cast<std::size_t>(y) * width + static_cast<std::size_t>(x);
+    T* to = block.data();
+    const bool whole = x + kBlockSide <= size.width;
+    for (int j = 0; j < std::min(kBlockSide, size.height - y); ++j) {
+        if (whole) {
+            std::memcpy(to, row, kBlockSide * sizeof(T));
+        } else {
+            std::copy_n(row, size.width - x, to);
+        }
+        row += width;
+        to += kBlockSide;
     }
 }
 
@@ -199,13 +283,18 @@ void Film::put(int x, int y, const PixelSums& sums) {
         for (float& value : *channel) value *= weight;
     }
     if (settings_.blend == BlendSpace::display) encode(colors);
-    lay_ink(sums, line_, colors);
+    lay_mean_ink(sums, line_, colors);
     Block block;
     finish(colors, block);
     store(x, y, block);
 }
 
 void Film::put(int x, int y, const ColorPacket& shaded) {
+    if (plain_bytes() && settings_.compose != Compose::lines) {
+        Lanes<std::uint32_t> bytes;
+        encode_bytes(shaded, bytes);
+        return copy_block(size_, x, y, bytes, display_.pixels.data());
+    }
     ColorPacket colors = paper(shaded);
     if (settings_.blend == BlendSpace::display) encode(colors);
     Block block;
@@ -241,103 +330,74 @@ void Film::put_display(int x, int y, std::span<const std::uint32_t> pixels) {
     std::ranges::copy(pixels, display_.pixels.begin() + static_cast<std::ptrdiff_t>(first));
 }
 
-void Film::touch_up(int x, int y, int count, const TouchUp& change) {
-    count = std::min(count, size_.width - x);
-    // Pixels that stay as they are must not go through the blend space and back, which rounds.
-    Lanes<std::uint8_t> changed{};
-    bool inked = false;
-    bool shifted = false;
-    for (int i = 0; i < count; ++i) {
-        const bool ink = change.ink_alpha != nullptr && change.ink_alpha[i] != 0.0F;
-        bool shift = false;
-        for (const float* plane : change.shift) shift |= plane != nullptr && plane[i] != 0.0F;
-        changed[i] = ink || shift ? 1 : 0;
-        inked |= ink;
-        shifted |= shift;
-    }
-    if (!inked && !shifted) return;
+void Film::put_pixel(int x, int y, const std::array<float, 4>& shaded) {
+    const int x0 = x - x % kBlockSide;
+    const int y0 = y - y % kBlockSide;
+    const int lane = y % kBlockSide * kBlockSide + x % kBlockSide;
+    ColorPacket one{};
+    one.r[lane] = shaded[0];
+    one.g[lane] = shaded[1];
+    one.b[lane] = shaded[2];
+    one.a[lane] = shaded[3];
+    one = paper(one);
+    if (settings_.blend == BlendSpace::display) encode(one);
+    Block all{};
+    load(x0, y0, all);
+    Block finished{};
+    finish(one, finished);
+    all.display[lane] = finished.display[lane];
+    all.linear.r[lane] = finished.linear.r[lane];
+    all.linear.g[lane] = finished.linear.g[lane];
+    all.linear.b[lane] = finished.linear.b[lane];
+    all.linear.a[lane] = finished.linear.a[lane];
+    store(x0, y0, all);
+}
 
-    const std::size_t first = static_cast<std::size_t>(y) * static_cast<std::size_t>(size_.width) +
-                              static_cast<std::size_t>(x);
-    ColorPacket colors = load(first, count);
-    if (shifted && settings_.compose != Compose::lines) shift_colors(change, count, colors);
-    if (inked) {
-        for (int i = 0; i < count; ++i) {
-            const float alpha = change.ink_alpha[i];
-            const auto ink = [&](std::size_t channel, float uniform) {
-                return change.ink_color ? alpha * uniform : change.ink_colors[channel][i];
-            };
-            const Color uniform = change.ink_color.value_or(Color{});
-            colors.r[i] = colors.r[i] * (1.0F - alpha) + ink(0, uniform.r);
-            colors.g[i] = colors.g[i] * (1.0F - alpha) + ink(1, uniform.g);
-            colors.b[i] = colors.b[i] * (1.0F - alpha) + ink(2, uniform.b);
-            colors.a[i] = colors.a[i] * (1.0F - alpha) + alpha;
-        }
+void Film::lay_ink(int x, int y, const BlockInk& ink) {
+    Block below{};
+    if (plain_bytes()) {
+        load_block(size_, x, y, display_.pixels.data(), below.display);
+        ink::lay_ink(ink, below.display);
+        return copy_block(size_, x, y, below.display, display_.pixels.data());
     }
-
+    load(x, y, below);
+    ColorPacket colors = in_blend_space(below);
+    ink::lay_ink(ink, colors);
     Block block;
     finish(colors, block);
-    const auto copy = [&](const auto& lanes, auto* plane) {
-        for (int i = 0; i < count; ++i) {
-            if (changed[i] != 0) plane[first + static_cast<std::size_t>(i)] = lanes[i];
-        }
-    };
-    if (settings_.display) copy(block.display, display_.pixels.data());
-    if (settings_.linear) {
-        std::size_t plane = 0;
-        for (const auto* lanes :
-             {&block.linear.r, &block.linear.g, &block.linear.b, &block.linear.a}) {
-            copy(*lanes, std::get<std::vector<float>>(channels_.channels[plane++].values).data());
-        }
+    // Pixels that stay as they are must not go through the blend space and back, which rounds.
+    for (int i = 0; i < kLanes; ++i) {
+        if (ink.alpha[i] != 0.0F) continue;
+        block.display[i] = below.display[i];
+        block.linear.r[i] = below.linear.r[i];
+        block.linear.g[i] = below.linear.g[i];
+        block.linear.b[i] = below.linear.b[i];
+        block.linear.a[i] = below.linear.a[i];
+    }
+    store(x, y, block);
+}
+
+void Film::load(int x, int y, Block& block) const {
+    if (settings_.display) load_block(size_, x, y, display_.pixels.data(), block.display);
+    if (!settings_.linear) return;
+    std::size_t plane = 0;
+    for (auto* lanes : {&block.linear.r, &block.linear.g, &block.linear.b, &block.linear.a}) {
+        const auto& values = std::get<std::vector<float>>(channels_.channels[plane++].values);
+        load_block(size_, x, y, values.data(), *lanes);
     }
 }
 
-/// Finished pixels, back in the blend space and premultiplied.
-ColorPacket Film::load(std::size_t first, int count) const {
+/// Finished pixels, premultiplied.
+ColorPacket Film::in_blend_space(const Block& block) const {
     ColorPacket colors{};
     if (settings_.linear) {
-        std::size_t plane = 0;
-        for (auto* lanes : {&colors.r, &colors.g, &colors.b, &colors.a}) {
-            const auto& values = std::get<std::vector<float>>(channels_.channels[plane++].values);
-            std::copy_n(values.begin() + static_cast<std::ptrdiff_t>(first), count, lanes->begin());
-        }
+        colors = block.linear;
         if (settings_.blend == BlendSpace::display) encode(colors);
         return colors;
     }
-    for (int i = 0; i < count; ++i) {
-        const std::uint32_t pixel = display_.pixels[first + static_cast<std::size_t>(i)];
-        const auto channel = [&](unsigned shift) {
-            return static_cast<float>((pixel >> shift) & 0xFFU) * (1.0F / 255.0F);
-        };
-        colors.a[i] = channel(24);
-        colors.r[i] = channel(0) * colors.a[i];
-        colors.g[i] = channel(8) * colors.a[i];
-        colors.b[i] = channel(16) * colors.a[i];
-    }
+    unpack(block.display, colors);
     if (settings_.blend == BlendSpace::linear) decode(colors);
     return colors;
-}
-
-void Film::shift_colors(const TouchUp& change, int count, ColorPacket& colors) const {
-    ColorPacket linear = colors;
-    if (settings_.blend == BlendSpace::display) (settings_.linear ? decode : decode_bytes)(linear);
-    std::size_t plane = 0;
-    for (auto* lanes : {&linear.r, &linear.g, &linear.b, &linear.a}) {
-        const float* shift = change.shift[plane++];
-        for (int i = 0; i < count; ++i) {
-            (*lanes)[i] = std::clamp((*lanes)[i] + shift[i], 0.0F, plane == 4 ? 1.0F : kInfinity);
-        }
-    }
-    if (settings_.blend == BlendSpace::display) encode(linear);
-    for (int i = 0; i < count; ++i) {
-        bool shifted = false;
-        for (const float* shift : change.shift) shifted |= shift[i] != 0.0F;
-        if (!shifted) continue;
-        colors.r[i] = linear.r[i];
-        colors.g[i] = linear.g[i];
-        colors.b[i] = linear.b[i];
-        colors.a[i] = linear.a[i];
-    }
 }
 
 template <class T>

@@ -67,17 +67,16 @@ class Film {
 
     /// Writes finished pixels of a row of the display image, which must have been asked for.
     void put_display(int x, int y, std::span<const std::uint32_t> pixels);
+    /// Finishes a single pixel.
+    void put_pixel(int x, int y, const std::array<float, 4>& shaded);
 
-    /// Changes up to kLanes finished pixels from (x, y) on to the right: adds `shift` to their
-    /// colour (linear, premultiplied), then lays ink over them. Pixels beyond the film's edge are
-    /// left out.
-    struct TouchUp {
-        const float* ink_alpha;                  ///< null: no ink
-        std::optional<Color> ink_color;          ///< one for all pixels, blend space; or else
-        std::array<const float*, 3> ink_colors;  ///< one each, times ink_alpha
-        std::array<const float*, 4> shift;       ///< null: none
+    /// Lays ink over the finished block at (x, y).
+    struct BlockInk {
+        const Lanes<float>& alpha;
+        std::optional<Color> color;          ///< one for all pixels, blend space; or else
+        std::array<const float*, 3> colors;  ///< one each, times alpha
     };
-    void touch_up(int x, int y, int count, const TouchUp& change);
+    void lay_ink(int x, int y, const BlockInk& ink);
 
     /// The lines' colour in the blend space, and any other.
     Color line_color() const { return line_; }
@@ -105,9 +104,13 @@ class Film {
     };
 
     ColorPacket paper(const ColorPacket& shaded) const;
+    /// Whether pixels are bytes and nothing else, and lines are mixed with them as they are.
+    bool plain_bytes() const {
+        return settings_.display && !settings_.linear && settings_.blend == BlendSpace::display;
+    }
     void finish(ColorPacket& blended, Block& block) const;
-    ColorPacket load(std::size_t first, int count) const;
-    void shift_colors(const TouchUp& change, int count, ColorPacket& colors) const;
+    void load(int x, int y, Block& block) const;
+    ColorPacket in_blend_space(const Block& block) const;
     void store(int x, int y, const Block& block);
 
     Size size_;

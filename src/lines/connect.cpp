@@ -1,7 +1,9 @@
 #include "lines/connect.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstring>
 #include <limits>
 
 namespace ink {
@@ -33,38 +35,85 @@ Vec2f nearest_within(Vec2f p, Vec2f a, Vec2f b) {
 void Connector::connect(const SampleGrid& grid, std::span<const SuspectEdge> edges,
                         std::span<const Crossing> crossings, std::vector<Segment>& segments) {
     segments.clear();
-    members_.clear();
-    const auto cells_across = static_cast<std::uint32_t>(grid.width - 1);
-    const auto add_member = [&](int i, int j, int side, std::size_t crossing) {
-        if (i < 0 || j < 0 || i >= grid.width - 1 || j >= grid.height - 1) return;
-        const auto cell = static_cast<std::uint64_t>(j) * cells_across + static_cast<unsigned>(i);
-        members_.push_back(cell << 34U | static_cast<std::uint64_t>(side) << 32U | crossing);
-    };
-    for (std::size_t k = 0; k < crossings.size(); ++k) {
-        const SuspectEdge& edge = edges[crossings[k].edge];
-        add_member(edge.i, edge.j, edge.down ? kLeft : kTop, k);
-        add_member(edge.down ? edge.i - 1 : edge.i, edge.down ? edge.j : edge.j - 1,
-                   edge.down ? kRight : kBottom, k);
-    }
-    std::ranges::sort(members_);
-
-    for (std::size_t k = 0; k < members_.size();) {
-        const std::uint64_t cell = members_[k] >> 34U;
-        const auto i = static_cast<int>(cell % cells_across);
-        const auto j = static_cast<int>(cell / cells_across);
-        ports_.clear();
-        for (; k < members_.size() && members_[k] >> 34U == cell; ++k) {
-            const Crossing& crossing = crossings[members_[k] & 0xFFFFFFFFU];
-            add_port(grid, i, j, static_cast<int>(members_[k] >> 32U & 3U), edges[crossing.edge],
-                     crossing);
+    if (crossings.empty()) return;
+    count_members(grid, edges, crossings);
+    // Most cells have none: eight at a time.
+    const std::size_t cells = counts_.size();
+    for (std::size_t first = 0; first < cells; first += 8) {
+        std::uint64_t eight = 0;
+        std::memcpy(&eight, counts_.data() + first, std::min<std::size_t>(8, cells - first));
+        for (; eight != 0;) {
+            const auto byte = static_cast<std::size_t>(std::countr_zero(eight)) / 8;
+            connect_cell(grid, edges, crossings, first + byte, segments);
+            eight &= ~(std::uint64_t{0xFF} << (8 * byte));
         }
-        first_segment_ = segments.size();
-        join_ports(segments);
     }
 }
 
-void Connector::add_port(const SampleGrid& grid, int i, int j, int side, const SuspectEdge& edge,
-                         const Crossing& crossing) {
+void Connector::count_members(const SampleGrid& grid, std::span<const SuspectEdge> edges,
+                              std::span<const Crossing> crossings) {
+    const int across = grid.width - 1;
+    const int down = grid.height - 1;
+    const std::size_t cells = static_cast<std::size_t>(across) * static_cast<std::size_t>(down);
+    counts_.assign(cells, 0);
+    members_.resize(cells);
+    more_.clear();
+    const auto add = [&](int i, int j, int side, std::size_t crossing) {
+        if (i < 0 || j < 0 || i >= across || j >= down) return;
+        const std::size_t cell = static_cast<std::size_t>(j) * static_cast<std::size_t>(across) +
+                                 static_cast<std::size_t>(i);
+        const Member member = static_cast<Member>(side) << 30U | static_cast<Member>(crossing);
+        if (counts_[cell] < 2) {
+            members_[cell][counts_[cell]++] = member;
+        } else {
+            counts_[cell] = 3;
+            more_.emplace_back(cell, member);
+        }
+    };
+    for (std::size_t k = 0; k < crossings.size(); ++k) {
+        const SuspectEdge& edge = edges[crossings[k].edge];
+        add(edge.i, edge.j, edge.down ? kLeft : kTop, k);
+        add(edge.down ? edge.i - 1 : edge.i, edge.down ? edge.j : edge.j - 1,
+            edge.down ? kRight : kBottom, k);
+    }
+    std::ranges::sort(more_);
+}
+
+void Connector::connect_cell(const SampleGrid& grid, std::span<const SuspectEdge> edges,
+                             std::span<const Crossing> crossings, std::size_t cell,
+                             std::vector<Segment>& segments) {
+    if (counts_[cell] < 2) return;  // nothing to join it with
+    const auto across = static_cast<std::size_t>(grid.width - 1);
+    const auto i = static_cast<int>(cell % across);
+    const auto j = static_cast<int>(cell / across);
+    const auto port = [&](Member member) {
+        const Crossing& crossing = crossings[member & 0x3FFFFFFFU];
+        return make_port(grid, i, j, static_cast<int>(member >> 30U), edges[crossing.edge],
+                         crossing);
+    };
+    Port p = port(members_[cell][0]);
+    Port q = port(members_[cell][1]);
+    if (counts_[cell] == 2) {
+        if (q.way < p.way) std::swap(p, q);
+        if (one_line(p, q)) {
+            add_segment(p, q, segments);
+            return;
+        }
+    }
+    // In an order that does not depend on that of the crossings.
+    cell_members_.assign(members_[cell].begin(), members_[cell].end());
+    auto more = std::ranges::lower_bound(more_, cell, {}, &std::pair<std::size_t, Member>::first);
+    for (; more != more_.end() && more->first == cell; ++more)
+        cell_members_.push_back(more->second);
+    std::ranges::sort(cell_members_);
+    ports_.clear();
+    for (const Member member : cell_members_) ports_.push_back(port(member));
+    first_segment_ = segments.size();
+    join_ports(segments);
+}
+
+Connector::Port Connector::make_port(const SampleGrid& grid, int i, int j, int side,
+                                     const SuspectEdge& edge, const Crossing& crossing) {
     const Vec2f corner = grid.point(i, j);
     const Vec2f inside = (crossing.point - corner) * (1.0F / grid.spacing);
     const auto first = static_cast<std::uint32_t>(grid.index(edge.i, edge.j));
@@ -83,7 +132,13 @@ void Connector::add_port(const SampleGrid& grid, int i, int j, int side, const S
         std::swap(port.before_sample, port.after_sample);
         port.before_in_front = !port.before_in_front;
     }
-    ports_.push_back(port);
+    return port;
+}
+
+/// Whether a line can run between two neighbouring ports without cutting another.
+bool Connector::one_line(const Port& p, const Port& q) {
+    return p.before == q.after && p.after == q.before &&
+           (p.before != p.after || p.crossing->type == q.crossing->type);
 }
 
 void Connector::join_ports(std::vector<Segment>& segments) {
@@ -103,9 +158,7 @@ bool Connector::join_best_pair(std::vector<Segment>& segments) {
     for (std::size_t k = 0; k < count; ++k) {
         const Port& p = ports_[k];
         const Port& q = ports_[(k + 1) % count];
-        const bool same_line = p.before == q.after && p.after == q.before &&
-                               (p.before != p.after || p.crossing->type == q.crossing->type);
-        if (!same_line || (count == 2 && k == 1)) continue;
+        if (!one_line(p, q) || (count == 2 && k == 1)) continue;
         const bool same_side = std::floor(p.way) == std::floor(q.way);
         const float cost =
             distance_squared(p.crossing->point, q.crossing->point) + (same_side ? 1e6F : 0.0F);
@@ -115,7 +168,7 @@ bool Connector::join_best_pair(std::vector<Segment>& segments) {
         }
     }
     if (best == count) return false;
-    segments.push_back(make_segment(ports_[best], ports_[(best + 1) % count]));
+    add_segment(ports_[best], ports_[(best + 1) % count], segments);
     const std::size_t second = (best + 1) % count;
     ports_.erase(ports_.begin() + static_cast<std::ptrdiff_t>(std::max(best, second)));
     ports_.erase(ports_.begin() + static_cast<std::ptrdiff_t>(std::min(best, second)));
@@ -137,7 +190,7 @@ void Connector::join_junction(std::vector<Segment>& segments) {
             least = distance_squared(from, foot);
             end = foot;
         }
-        segments.push_back(make_segment(ports_[0], end));
+        add_segment(ports_[0], end, segments);
         return;
     }
     const auto is_line = [](const Port& p) { return p.crossing->nearer != kNobody; };
@@ -157,23 +210,23 @@ void Connector::join_junction(std::vector<Segment>& segments) {
     Vec2f middle;
     for (const Port& port : ports_) middle = middle + port.crossing->point;
     middle = middle * (1.0F / static_cast<float>(ports_.size()));
-    for (const Port& port : ports_) segments.push_back(make_segment(port, middle));
+    for (const Port& port : ports_) add_segment(port, middle, segments);
 }
 
 /// Of three ports: the first two are one line, on which the third ends.
 void Connector::end_last_on_others(std::vector<Segment>& segments) {
-    const Segment through = make_segment(ports_[0], ports_[1]);
-    segments.push_back(through);
-    segments.push_back(
-        make_segment(ports_[2], nearest_within(ports_[2].crossing->point, through.a, through.b)));
+    add_segment(ports_[0], ports_[1], segments);
+    const Segment through = segments.back();
+    add_segment(ports_[2], nearest_within(ports_[2].crossing->point, through.a, through.b),
+                segments);
 }
 
 /// Going clockwise round the cell, a line that enters it at `from` has what comes after that port
 /// on its left (y points down).
-Segment Connector::make_segment(const Port& from, const Port& to) {
+void Connector::add_segment(const Port& from, const Port& to, std::vector<Segment>& segments) {
     const Crossing& p = *from.crossing;
     const Crossing& q = *to.crossing;
-    Segment segment = make_segment(from, q.point);
+    Segment& segment = add_segment(from, q.point, segments);
     segment.spans_cell = true;
     segment.strength = 0.5F * (p.strength + q.strength);
     segment.t = 0.5F * (p.t + q.t);
@@ -182,12 +235,11 @@ Segment Connector::make_segment(const Port& from, const Port& to) {
     segment.left_at_b = mesh ? q.nearer : to.before;
     segment.right_at_b = mesh ? q.nearer : to.after;
     segment.left_in_front_at_b = to.before_in_front;
-    return segment;
 }
 
-Segment Connector::make_segment(const Port& from, Vec2f to) {
+Segment& Connector::add_segment(const Port& from, Vec2f to, std::vector<Segment>& segments) {
     const Crossing& p = *from.crossing;
-    Segment segment;
+    Segment& segment = segments.emplace_back();
     segment.a = p.point;
     segment.b = to;
     segment.type = segment.type_at_b = p.type;

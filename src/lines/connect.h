@@ -1,7 +1,10 @@
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "lines/detect.h"
@@ -32,16 +35,27 @@ class Connector {
         bool before_in_front;  ///< of the two sides
     };
 
-    void add_port(const SampleGrid& grid, int i, int j, int side, const SuspectEdge& edge,
-                  const Crossing& crossing);
+    void count_members(const SampleGrid& grid, std::span<const SuspectEdge> edges,
+                       std::span<const Crossing> crossings);
+    void connect_cell(const SampleGrid& grid, std::span<const SuspectEdge> edges,
+                      std::span<const Crossing> crossings, std::size_t cell,
+                      std::vector<Segment>& segments);
+    static Port make_port(const SampleGrid& grid, int i, int j, int side, const SuspectEdge& edge,
+                          const Crossing& crossing);
+    static bool one_line(const Port& p, const Port& q);
     void join_ports(std::vector<Segment>& segments);
     bool join_best_pair(std::vector<Segment>& segments);
     void join_junction(std::vector<Segment>& segments);
     void end_last_on_others(std::vector<Segment>& segments);
-    static Segment make_segment(const Port& from, const Port& to);
-    static Segment make_segment(const Port& from, Vec2f to);
+    static void add_segment(const Port& from, const Port& to, std::vector<Segment>& segments);
+    static Segment& add_segment(const Port& from, Vec2f to, std::vector<Segment>& segments);
 
-    std::vector<std::uint64_t> members_;  ///< cell << 32 | side << 30 | crossing, to be sorted
+    /// A crossing on a side of a cell: side << 30 | crossing.
+    using Member = std::uint32_t;
+    std::vector<std::uint8_t> counts_;                  ///< of a cell's members
+    std::vector<std::array<Member, 2>> members_;        ///< a cell's first two
+    std::vector<std::pair<std::size_t, Member>> more_;  ///< the others, by cell
+    std::vector<Member> cell_members_;
     std::vector<Port> ports_;
     std::size_t first_segment_ = 0;  ///< of the cell at hand
 };

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "base/vec.h"
-#include "lines/segment.h"
+#include "lines/ink.h"
 
 namespace ink {
 
@@ -21,7 +21,7 @@ class LineDensity {
     /// is the greatest width of a line, pixels: the squares are several times as wide.
     LineDensity(int x0, int y0, int x1, int y1, float widest);
 
-    void add(const Segment& segment, float width);
+    void add(const InkStroke& stroke, float width);
     /// Lines of that length in all about a place, pixels.
     void add(Vec2f place, float length, float width);
     LineDensity& operator+=(const LineDensity& other);

@@ -1,6 +1,8 @@
 #include "lines/detect.h"
 
 #include <algorithm>
+#include <bit>
+#include <cstring>
 
 #include "base/lanes.h"
 #include "base/multiversion.h"
@@ -27,7 +29,7 @@ struct Row {
 /// Suspicions between `a` and `b`, point by point.
 INKTRACE_MULTIVERSION
 void compare_rows(const Row& a, const Row& b, int count, const DetectSettings& settings,
-                  std::uint32_t* __restrict codes) {
+                  std::uint8_t* __restrict codes) {
     const auto [aid, apx, apy, apz, anx, any, anz] = a;
     const auto [bid, bpx, bpy, bpz, bnx, bny, bnz] = b;
     const float sine_squared = settings.chord_sine * settings.chord_sine;
@@ -50,23 +52,31 @@ void compare_rows(const Row& a, const Row& b, int count, const DetectSettings& s
         const std::uint32_t bent = turn < cosine ? normal_code : 0U;
         const std::uint32_t broken = along * along > bound ? depth_code : bent;
         const std::uint32_t same = aid[i] != kBackground ? broken : 0U;
-        codes[i] = aid[i] != bid[i] ? 1U : same;
+        codes[i] = static_cast<std::uint8_t>(aid[i] != bid[i] ? 1U : same);
     }
 }
 
 static_assert(static_cast<int>(Suspicion::id) == 1);
 
-/// `codes` has zeros behind its `count` entries, up to a multiple of kLanes.
-void collect(const std::uint32_t* codes, int count, int j, bool down,
+/// The same where the ID is all that counts.
+INKTRACE_MULTIVERSION
+void compare_ids(const GeometryId* __restrict a, const GeometryId* __restrict b, int count,
+                 std::uint8_t* __restrict codes) {
+    for (int i = 0; i < count; ++i) codes[i] = a[i] != b[i] ? 1 : 0;
+}
+
+/// `codes` has zeros behind its `count` entries, up to a multiple of eight.
+void collect(const std::uint8_t* codes, int count, int j, bool down,
              std::vector<SuspectEdge>& edges) {
-    for (int i = 0; i < count; i += kLanes) {
-        std::uint32_t any = 0;
-        for (int k = 0; k < kLanes; ++k) any |= codes[i + k];
-        if (any == 0) continue;
-        for (int k = i; k < i + kLanes && k < count; ++k) {
-            if (codes[k] == 0) continue;
-            edges.push_back({static_cast<std::uint16_t>(k), static_cast<std::uint16_t>(j), down,
-                             static_cast<Suspicion>(codes[k])});
+    for (int i = 0; i < count; i += 8) {
+        std::uint64_t eight = 0;
+        std::memcpy(&eight, codes + i, 8);
+        for (; eight != 0;) {
+            const int byte = std::countr_zero(eight) / 8;
+            const auto code = static_cast<std::uint8_t>(eight >> (8 * byte));
+            edges.push_back({static_cast<std::uint16_t>(i + byte), static_cast<std::uint16_t>(j),
+                             down, static_cast<Suspicion>(code)});
+            eight &= ~(std::uint64_t{0xFF} << (8 * byte));
         }
     }
 }
@@ -76,16 +86,21 @@ void collect(const std::uint32_t* codes, int count, int j, bool down,
 void detect(const SampleGrid& grid, const DetectSettings& settings,
             std::vector<SuspectEdge>& edges) {
     edges.clear();
-    std::vector<std::uint32_t> codes(static_cast<std::size_t>(grid.width) + kLanes);
+    const bool ids_only = !settings.depths && !settings.normals;
+    const auto compare = [&](const Row& a, const Row& b, int count, std::uint8_t* codes) {
+        if (ids_only) return compare_ids(a.id, b.id, count, codes);
+        compare_rows(a, b, count, settings, codes);
+    };
+    std::vector<std::uint8_t> codes(static_cast<std::size_t>(grid.width) + kLanes);
     for (int j = 0; j < grid.height; ++j) {
         const Row row(grid, grid.index(0, j));
         const Row right(grid, grid.index(1, j));
-        compare_rows(row, right, grid.width - 1, settings, codes.data());
+        compare(row, right, grid.width - 1, codes.data());
         codes[static_cast<std::size_t>(grid.width) - 1] = 0;
         collect(codes.data(), grid.width - 1, j, false, edges);
         if (j + 1 == grid.height) break;
         const Row below(grid, grid.index(0, j + 1));
-        compare_rows(row, below, grid.width, settings, codes.data());
+        compare(row, below, grid.width, codes.data());
         collect(codes.data(), grid.width, j, true, edges);
     }
 }

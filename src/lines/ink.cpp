@@ -7,6 +7,7 @@
 #include "base/lanes.h"
 #include "base/multiversion.h"
 #include "lines/coverage.h"
+#include "lines/ink_kernels.h"
 
 namespace ink {
 
@@ -19,83 +20,6 @@ constexpr int kProfileEntries = 512;
 /// the outline, and above what is well behind.
 constexpr float kMeshBehind = 0.1F;
 
-/// A segment made ready for the loop over pixels.
-struct Stroke {
-    Vec2f a, along;  ///< start and unit direction
-    float length, half, strength, t;
-    const float* profile;  ///< null: solid
-};
-
-/// A band this wide reaches beyond every pixel that its far edge could cut.
-constexpr float kWideHalf = 0.7072F;
-
-/// Pixels of a row that are drawn at once. Segments are short.
-constexpr int kRun = 8;
-
-/// Pixels of a row, from the one whose centre is (x, y) on. What a pixel gets does not depend on
-/// where the run begins. Round ends fall off as the band does across: exactly so where the line
-/// goes on, nearly straight, and by less than 1/16 of a pixel elsewhere; so no end claims more than
-/// the band, or it would widen the lines that go on from it.
-template <bool kWide>
-INKTRACE_INLINE void draw_run(const Stroke& stroke, const SquareCoverage& band, float x, float y,
-                              float* coverage, float* t) {
-    const auto [a, along, length, half, strength, stroke_t, profile] = stroke;
-    const float ry = y - a.y;
-    // Copies, which the compiler knows to be apart.
-    std::array<float, kRun> most;
-    std::array<float, kRun> nearest;
-    std::copy_n(coverage, kRun, most.data());
-    std::copy_n(t, kRun, nearest.data());
-    for (std::size_t i = 0; i < kRun; ++i) {
-        const float rx = (x + static_cast<float>(i)) - a.x;
-        const float s = rx * along.x + ry * along.y;
-        const float across = ry * along.x - rx * along.y;
-        const float beyond = std::max(std::max(-s, s - length), 0.0F);
-        const float distance = std::sqrt(across * across + beyond * beyond);
-        const float area =
-            kWide ? band(half - distance) : band(half - distance) - band(-half - distance);
-        const float ink = area * strength;
-        most[i] = std::max(most[i], ink);
-        nearest[i] = std::min(nearest[i], ink > 0.0F ? stroke_t : kInfinity);
-    }
-    std::copy_n(most.data(), kRun, coverage);
-    std::copy_n(nearest.data(), kRun, t);
-}
-
-/// What a stroke may reach of the tile: pixels [left, right] x [top, bottom].
-struct Reach {
-    int left, right, top, bottom;
-};
-
-/// Draws on the rows of a tile whose upper left pixel has its centre at (x0, y0); `stride` is the
-/// length of a row in `coverage` and `t`.
-INKTRACE_MULTIVERSION
-void draw_solid(const Stroke& stroke, const Reach& reach, float x0, float y0, std::size_t stride,
-                float* coverage, float* t) {
-    const auto [a, along, length, half, strength, stroke_t, profile] = stroke;
-    const SquareCoverage band(along.y, along.x);
-    // Along a row the band takes this much to either side of its middle.
-    const float steep = std::abs(along.y);
-    const float drift = steep > 0.05F ? along.x / along.y : 0.0F;
-    const float side = steep > 0.05F ? (half + 0.75F) / steep : kInfinity;
-    for (int row = reach.top; row <= reach.bottom; ++row) {
-        const float y = y0 + static_cast<float>(row);
-        const float middle = a.x + (y - a.y) * drift - x0;
-        const int first = static_cast<int>(std::max(middle - side, static_cast<float>(reach.left)));
-        const int last = static_cast<int>(std::min(middle + side, static_cast<float>(reach.right)));
-        const std::size_t k = static_cast<std::size_t>(row) * stride;
-        for (int i = first; i <= last; i += kRun) {
-            const float x = x0 + static_cast<float>(i);
-            const std::size_t n = k + static_cast<std::size_t>(i);
-            if (half >= kWideHalf) {
-                draw_run<true>(stroke, band, x, y, coverage + n, t + n);
-            } else {
-                draw_run<false>(stroke, band, x, y, coverage + n, t + n);
-            }
-        }
-    }
-}
-
 INKTRACE_MULTIVERSION
 void cover(const Lanes<float>& distance, const Lanes<float>& nx, const Lanes<float>& ny, float half,
            Lanes<float>& inks) {
@@ -105,36 +29,23 @@ void cover(const Lanes<float>& distance, const Lanes<float>& nx, const Lanes<flo
     }
 }
 
-void draw_soft(const Stroke& stroke, const Reach& reach, float x0, float y0, std::size_t stride,
-               float* coverage, float* t) {
-    for (int row = reach.top; row <= reach.bottom; ++row) {
-        for (int column = reach.left; column <= reach.right; ++column) {
-            const float rx = x0 + static_cast<float>(column) - stroke.a.x;
-            const float ry = y0 + static_cast<float>(row) - stroke.a.y;
-            const float s =
-                std::clamp(rx * stroke.along.x + ry * stroke.along.y, 0.0F, stroke.length);
-            const float u =
-                std::hypot(rx - s * stroke.along.x, ry - s * stroke.along.y) / stroke.half;
-            if (u >= 1.0F) continue;
-            const std::size_t k =
-                static_cast<std::size_t>(row) * stride + static_cast<std::size_t>(column);
-            const float ink =
-                stroke.profile[static_cast<int>(u * kProfileEntries)] * stroke.strength;
-            t[k] = std::min(t[k], stroke.t);
-            coverage[k] = std::max(coverage[k], ink);
-        }
-    }
-}
-
-Stroke make_stroke(const Segment& segment, float width, const float* profile) {
-    const Vec2f d = segment.b - segment.a;
+Band make_band(const InkStroke& stroke, float width) {
+    const Vec2f d = stroke.b - stroke.a;
     const float length = std::sqrt(d.x * d.x + d.y * d.y);
     const Vec2f along = length > 0.0F ? d * (1.0F / length) : Vec2f{1.0F, 0.0F};
-    const float t = segment.t + (segment.type == LineType::mesh ? kMeshBehind : 0.0F);
-    return {segment.a, along, length, 0.5F * width, segment.strength, t, profile};
+    return {stroke.a, along, length, 0.5F * width, stroke.strength, stroke.t};
 }
 
 }  // namespace
+
+InkStroke make_ink_stroke(const Segment& segment, std::size_t style) {
+    return {segment.a,
+            segment.b,
+            segment.strength,
+            segment.t + (segment.type == LineType::mesh ? kMeshBehind : 0.0F),
+            static_cast<std::uint32_t>(style),
+            segment.level == 0};
+}
 
 float InkSettings::widest() const {
     float widest = 0.0F;
@@ -165,43 +76,52 @@ void InkTile::begin(int x0, int y0, int width, int height) {
     y0_ = y0;
     width_ = width;
     height_ = height;
-    // Whole runs, and one more, which loops may write to.
-    stride_ = (width + kLanes - 1) / kLanes * kLanes + kLanes;
-    touched_.assign(plane_size() / kLanes, 0);
+    const auto blocks = [](int pixels) {
+        return static_cast<std::size_t>((pixels + kBlockSide - 1) / kBlockSide);
+    };
+    across_ = blocks(width);
+    touched_.assign(across_ * blocks(height), 0);
     for (Layer& layer : layers_) layer.used = false;
     empty_ = true;
 }
 
-void InkTile::draw(const Segment& segment, std::size_t style, float width_scale) {
-    const float width = settings_.styles[style].width_px * width_scale;
-    const float reach = 0.5F * width + 0.75F;
+void InkTile::draw(const InkStroke& stroke, float width_scale) {
+    const float width = settings_.styles[stroke.style].width_px * width_scale;
+    const float reach = 0.5F * width + kHalfDiagonal;
     const auto first = [&](float a, float b, int origin) {
-        return std::max(static_cast<int>(std::floor(std::min(a, b) - reach)) - origin, 0);
+        const int pixel = static_cast<int>(std::floor(std::min(a, b) - reach)) - origin;
+        return std::max(pixel, 0) / kBlockSide;
     };
     const auto last = [&](float a, float b, int origin, int size) {
-        return std::min(static_cast<int>(std::floor(std::max(a, b) + reach)) - origin, size - 1);
+        const int pixel = static_cast<int>(std::floor(std::max(a, b) + reach)) - origin;
+        return pixel < 0 ? -1 : std::min(pixel, size - 1) / kBlockSide;
     };
-    const Reach pixels{
-        first(segment.a.x, segment.b.x, x0_), last(segment.a.x, segment.b.x, x0_, width_),
-        first(segment.a.y, segment.b.y, y0_), last(segment.a.y, segment.b.y, y0_, height_)};
-    if (pixels.left > pixels.right || pixels.top > pixels.bottom) return;
+    const BlockRange range{
+        first(stroke.a.x, stroke.b.x, x0_), last(stroke.a.x, stroke.b.x, x0_, width_),
+        first(stroke.a.y, stroke.b.y, y0_), last(stroke.a.y, stroke.b.y, y0_, height_)};
+    if (range.left > range.right || range.top > range.bottom) return;
 
-    Layer& layer = layer_of(style);
-    const Stroke stroke = make_stroke(segment, width, profile_.empty() ? nullptr : profile_.data());
-    for (int y = pixels.top; y <= pixels.bottom; ++y) {
-        for (int x = pixels.left; x <= pixels.right; x += kLanes) touch(x, y);
-        touch(pixels.right, y);
+    Layer& layer = layer_of(stroke.style);
+    const Band band = make_band(stroke, width);
+    const InkPlanes planes{static_cast<float>(x0_) + 0.5F,
+                           static_cast<float>(y0_) + 0.5F,
+                           across_,
+                           layer.coverage.data(),
+                           layer.t.empty() ? nullptr : layer.t.data(),
+                           touched_.data()};
+    if (profile_.empty()) {
+        draw_solid(band, range, planes);
+    } else {
+        draw_soft(band, range, planes, profile_);
     }
-    (profile_.empty() ? draw_solid : draw_soft)(
-        stroke, pixels, static_cast<float>(x0_) + 0.5F, static_cast<float>(y0_) + 0.5F,
-        static_cast<std::size_t>(stride_), layer.coverage.data(), layer.t.data());
 }
 
 InkTile::Layer& InkTile::layer_of(std::size_t style) {
     Layer& layer = layers_[layer_of_style_[style]];
     if (!layer.used) {
-        layer.coverage.assign(plane_size(), 0.0F);
-        layer.t.assign(plane_size(), kInfinity);
+        layer.coverage.assign(blocks(), {});
+        // What lies on top matters only where inks differ.
+        if (layers_.size() > 1) layer.t.assign(blocks(), Lanes<float>::filled(kInfinity));
         layer.used = true;
         empty_ = false;
     }
@@ -221,59 +141,63 @@ void InkTile::draw_faces(int x, int y, const Lanes<float>& distance, const Lanes
             inks[i] = u < 1.0F ? profile_[static_cast<std::size_t>(u * kProfileEntries)] : 0.0F;
         }
     }
+    const std::size_t k = index(x, y) / kLanes;
+    bool any = false;
     for (int i = 0; i < kLanes; ++i) {
-        const int column = x + i % kBlockSide;
-        const int row = y + i / kBlockSide;
-        if (inks[i] <= 0.0F || column >= width_ || row >= height_) continue;
-        const std::size_t k = touch(column, row);
-        layer.coverage[k] = std::max(layer.coverage[k], inks[i]);
-        layer.t[k] = std::min(layer.t[k], t[i] + kMeshBehind);
+        if (inks[i] <= 0.0F) continue;
+        any = true;
+        layer.coverage[k][i] = std::max(layer.coverage[k][i], inks[i]);
+        if (!layer.t.empty()) layer.t[k][i] = std::min(layer.t[k][i], t[i] + kMeshBehind);
     }
+    if (any && touched_[k] == 0) touched_[k] = kTouched;
 }
 
 void InkTile::finish() {
     if (empty_) return;
-    std::vector<const Layer*> used;
+    used_.clear();
     for (const Layer& layer : layers_) {
-        if (layer.used) used.push_back(&layer);
+        if (layer.used) used_.push_back(&layer);
     }
-    alpha_.resize(plane_size());
-    if (used.size() == 1) return finish_alone(*used.front());
+    alpha_.resize(blocks());
+    if (used_.size() == 1) return finish_alone(*used_.front());
 
     uniform_.reset();
-    std::ranges::fill(alpha_, 0.0F);
-    for (auto& plane : color_) plane.resize(plane_size());
-    for (std::size_t run = 0; run < touched_.size(); ++run) {
-        if (touched_[run] == 0) continue;
-        for (std::size_t k = run * kLanes; k < (run + 1) * kLanes; ++k) finish_pixel(k, used);
+    std::ranges::fill(alpha_, Lanes<float>{});
+    for (auto& plane : color_) plane.resize(blocks() * kLanes);
+    for (std::size_t block = 0; block < blocks(); ++block) {
+        if (touched_[block] == 0) continue;
+        for (std::size_t k = block * kLanes; k < (block + 1) * kLanes; ++k) finish_pixel(k, used_);
     }
 }
 
 void InkTile::finish_alone(const Layer& layer) {
     uniform_ = layer.color;
-    for (std::size_t k = 0; k < alpha_.size(); ++k) alpha_[k] = layer.coverage[k] * layer.opacity;
+    for (std::size_t k = 0; k < alpha_.size(); ++k) {
+        for (int i = 0; i < kLanes; ++i) alpha_[k][i] = layer.coverage[k][i] * layer.opacity;
+    }
 }
 
 /// The inks of a pixel over each other, front to back. Among equally near ones the first style's
 /// lies on top.
 void InkTile::finish_pixel(std::size_t k, std::span<const Layer* const> used) {
+    const std::size_t block = k / kLanes;
+    const auto lane = static_cast<int>(k % kLanes);
     here_.clear();
     for (const Layer* layer : used) {
-        if (layer->coverage[k] == 0.0F) continue;
-        here_.insert(std::ranges::upper_bound(here_, layer->t[k], {},
-                                              [&](const Layer* other) { return other->t[k]; }),
-                     layer);
+        if (layer->coverage[block][lane] == 0.0F) continue;
+        const auto depth = [&](const Layer* of) { return of->t[block][lane]; };
+        here_.insert(std::ranges::upper_bound(here_, depth(layer), {}, depth), layer);
     }
     float clear = 1.0F;  // what the inks so far let through
     Color color{0.0F, 0.0F, 0.0F};
     for (const Layer* layer : here_) {
-        const float ink = clear * layer->coverage[k] * layer->opacity;
+        const float ink = clear * layer->coverage[block][lane] * layer->opacity;
         color.r += ink * layer->color.r;
         color.g += ink * layer->color.g;
         color.b += ink * layer->color.b;
         clear -= ink;
     }
-    alpha_[k] = 1.0F - clear;
+    alpha_[block][lane] = 1.0F - clear;
     color_[0][k] = color.r;
     color_[1][k] = color.g;
     color_[2][k] = color.b;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 
 namespace ink {
 
@@ -62,7 +63,53 @@ bool is_curved(const Sample& sample) {
 
 bool same_surface(const Sample& a, const Sample& b) { return a.id == b.id && a.ball == b.ball; }
 
+float crease_strength(const LocateSettings& settings, float angle) {
+    return smoothstep(settings.crease_min_deg * kRadiansPerDegree,
+                      settings.crease_full_deg * kRadiansPerDegree, angle);
+}
+
 }  // namespace
+
+bool needs_check(const LocateSettings& settings, const Prediction& p) {
+    using Kind = Prediction::Kind;
+    // The check would repeat what the edge's end has seen.
+    const bool known = (p.kind == Kind::first_limb && p.at + settings.check_offset >= 1.0F) ||
+                       (p.kind == Kind::second_limb && p.at <= settings.check_offset);
+    return !known && p.squared_radius >= settings.least_checked * settings.least_checked;
+}
+
+float checked_place(const LocateSettings& settings, const Prediction& p) {
+    if (p.kind == Prediction::Kind::first_limb) return p.at + settings.check_offset;
+    if (p.kind == Prediction::Kind::second_limb) return p.at - settings.check_offset;
+    return p.at;
+}
+
+/// What a prediction says needs no measuring: a limb hides, a seam joins.
+bool cross_as_predicted(const Viewpoint& viewpoint, const LocateSettings& settings,
+                        const Prediction& p, Vec2f a, Vec2f b, const PredictedSide& first,
+                        const PredictedSide& second, Crossing& crossing) {
+    using Kind = Prediction::Kind;
+    const bool first_in_front =
+        p.kind == Kind::first_limb || (p.kind != Kind::second_limb && first.t <= second.t);
+    crossing.point = a + (b - a) * p.at;
+    crossing.first = first.id;
+    crossing.second = second.id;
+    crossing.nearer = first_in_front ? first.id : second.id;
+    crossing.first_in_front = first_in_front;
+    crossing.t = p.t;
+    crossing.strength = 1.0F;
+    const bool one_id = first.id == second.id;
+    if (p.kind != Kind::seam) {
+        crossing.type = one_id ? LineType::self_occlusion : LineType::silhouette;
+        return true;
+    }
+    crossing.type = one_id ? LineType::crease : LineType::intersection;
+    if (one_id) {
+        const float angle = seam_angle(viewpoint, crossing.point, p.t, first.ball, second.ball);
+        crossing.strength = crease_strength(settings, angle);
+    }
+    return crossing.strength > 0.0F;
+}
 
 Locator::Locator(const Viewpoint& viewpoint, const LocateSettings& settings)
     : viewpoint_(viewpoint),
@@ -78,7 +125,16 @@ Locator::Locator(const Viewpoint& viewpoint, const LocateSettings& settings)
 void Locator::locate(const SampleGrid& grid, std::span<const SuspectEdge> edges,
                      const SurfaceFunction& describe, const SampleFunction& sample,
                      std::vector<Crossing>& crossings) {
-    start(grid, edges, describe);
+    all_.resize(edges.size());
+    std::iota(all_.begin(), all_.end(), 0U);
+    crossings.clear();
+    locate_some(grid, edges, all_, describe, sample, crossings);
+}
+
+void Locator::locate_some(const SampleGrid& grid, std::span<const SuspectEdge> edges,
+                          std::span<const std::uint32_t> some, const SurfaceFunction& describe,
+                          const SampleFunction& sample, std::vector<Crossing>& crossings) {
+    start(grid, edges, some, describe);
     for (;;) {
         active_.clear();
         for (std::size_t k = 0; k < intervals_.size(); ++k) {
@@ -91,7 +147,6 @@ void Locator::locate(const SampleGrid& grid, std::span<const SuspectEdge> edges,
     drop_slits(grid.spacing, sample);
     refine_steep(sample);
 
-    crossings.clear();
     Crossing crossing;
     for (const Interval& interval : intervals_) {
         if (classify(interval, crossing)) crossings.push_back(crossing);
@@ -100,21 +155,22 @@ void Locator::locate(const SampleGrid& grid, std::span<const SuspectEdge> edges,
 
 /// Intervals go by squares of the lattice, so that rays of a packet are close together.
 void Locator::start(const SampleGrid& grid, std::span<const SuspectEdge> edges,
-                    const SurfaceFunction& describe) {
+                    std::span<const std::uint32_t> some, const SurfaceFunction& describe) {
     constexpr int kSquare = 8;
     const int across = (grid.width + kSquare - 1) / kSquare;
     const int down = (grid.height + kSquare - 1) / kSquare;
     const auto square = [&](const SuspectEdge& edge) {
         return static_cast<std::size_t>(edge.j / kSquare * across + edge.i / kSquare);
     };
-    bins_.assign(static_cast<std::size_t>(across * down) + 1, 0);
-    for (const SuspectEdge& edge : edges) ++bins_[square(edge) + 1];
-    for (std::size_t k = 1; k < bins_.size(); ++k) bins_[k] += bins_[k - 1];
-    order_.resize(edges.size());
-    for (std::uint32_t k = 0; k < edges.size(); ++k) order_[bins_[square(edges[k])]++] = k;
-
     intervals_.clear();
-    intervals_.reserve(edges.size());
+    if (some.empty()) return;
+    bins_.assign(static_cast<std::size_t>(across * down) + 1, 0);
+    for (const std::uint32_t k : some) ++bins_[square(edges[k]) + 1];
+    for (std::size_t k = 1; k < bins_.size(); ++k) bins_[k] += bins_[k - 1];
+    order_.resize(some.size());
+    for (const std::uint32_t k : some) order_[bins_[square(edges[k])]++] = k;
+
+    intervals_.reserve(some.size());
     for (const std::uint32_t k : order_) {
         const SuspectEdge& edge = edges[k];
         const int i = edge.i + (edge.down ? 0 : 1);
@@ -149,13 +205,7 @@ void Locator::predict(Interval& interval) const {
     interval.prediction =
         predict_crossing(viewpoint_, interval.a, interval.at_a, interval.b, interval.at_b);
     if (!interval.prediction) return;
-    const Prediction& p = *interval.prediction;
-    // The check would repeat what the interval's end has seen.
-    const bool known =
-        (p.kind == Prediction::Kind::first_limb && p.at + settings_.check_offset >= 1.0F) ||
-        (p.kind == Prediction::Kind::second_limb && p.at <= settings_.check_offset);
-    if (known || p.squared_radius < settings_.least_checked * settings_.least_checked)
-        interval.state = State::foreseen;
+    if (!needs_check(settings_, *interval.prediction)) interval.state = State::foreseen;
 }
 
 /// One more sample on every active interval.
@@ -176,9 +226,7 @@ void Locator::step(const SampleFunction& sample) {
 /// Where to look next: beside the predicted crossing, or in the middle.
 Vec2f Locator::next_point(const Interval& interval) const {
     if (!interval.prediction) return (interval.a + interval.b) * 0.5F;
-    float at = interval.prediction->at;
-    if (interval.prediction->kind == Prediction::Kind::first_limb) at += settings_.check_offset;
-    if (interval.prediction->kind == Prediction::Kind::second_limb) at -= settings_.check_offset;
+    const float at = checked_place(settings_, *interval.prediction);
     return interval.a + (interval.b - interval.a) * at;
 }
 
@@ -450,7 +498,10 @@ bool Locator::classify(const Interval& interval, Crossing& crossing) const {
     crossing.first = a.id;
     crossing.second = b.id;
     crossing.strength = 1.0F;
-    if (interval.state == State::foreseen) return classify_foreseen(interval, crossing);
+    if (interval.state == State::foreseen) {
+        return cross_as_predicted(viewpoint_, settings_, *interval.prediction, interval.a,
+                                  interval.b, {a.id, a.t, a.ball}, {b.id, b.t, b.ball}, crossing);
+    }
 
     crossing.point = (interval.a + interval.b) * 0.5F;
     const bool a_in_front = lies_in_front(a, b);
@@ -470,7 +521,8 @@ bool Locator::classify(const Interval& interval, Crossing& crossing) const {
     }
     if (!has_crease(interval) || one_facet(a, b)) return false;
     crossing.type = LineType::crease;
-    crossing.strength = crease_strength(2.0F * std::asin(std::min(0.5F * turn(a, b), 1.0F)));
+    crossing.strength =
+        crease_strength(settings_, 2.0F * std::asin(std::min(0.5F * turn(a, b), 1.0F)));
     return true;
 }
 
@@ -489,36 +541,6 @@ bool Locator::ends_at_rim(const Interval& interval) const {
     // Where the surface turns away, its slope grows without end and would make every edge near.
     const float stretch = 1.0F + std::min(slope(front), settings_.steep_slope);
     return front.rim <= settings_.rim_slack * across * stretch;
-}
-
-/// What a prediction says needs no measuring: a limb hides, a seam joins.
-bool Locator::classify_foreseen(const Interval& interval, Crossing& crossing) const {
-    using Kind = Prediction::Kind;
-    const Prediction& p = *interval.prediction;
-    const Sample& a = interval.at_a;
-    const Sample& b = interval.at_b;
-    const bool a_in_front =
-        p.kind == Kind::first_limb || (p.kind != Kind::second_limb && a.t <= b.t);
-    crossing.point = interval.a + (interval.b - interval.a) * p.at;
-    crossing.nearer = a_in_front ? a.id : b.id;
-    crossing.first_in_front = a_in_front;
-    crossing.t = p.t;
-    const bool one_id = a.id == b.id;
-    if (p.kind != Kind::seam) {
-        crossing.type = one_id ? LineType::self_occlusion : LineType::silhouette;
-        return true;
-    }
-    crossing.type = one_id ? LineType::crease : LineType::intersection;
-    if (one_id) {
-        crossing.strength =
-            crease_strength(seam_angle(viewpoint_, crossing.point, p.t, a.ball, b.ball));
-    }
-    return crossing.strength > 0.0F;
-}
-
-float Locator::crease_strength(float angle) const {
-    return smoothstep(settings_.crease_min_deg * kRadiansPerDegree,
-                      settings_.crease_full_deg * kRadiansPerDegree, angle);
 }
 
 }  // namespace ink

@@ -66,6 +66,23 @@ struct Crossing {
     bool first_in_front = true;       ///< whether that is the first end's side
 };
 
+/// One side of a predicted crossing.
+struct PredictedSide {
+    GeometryId id = kBackground;
+    float t = 0.0F;  ///< as in Sample
+    Ball ball{};
+};
+
+/// Whether a ray must confirm a prediction, and where along the edge it goes, in [0, 1].
+bool needs_check(const LocateSettings& settings, const Prediction& prediction);
+float checked_place(const LocateSettings& settings, const Prediction& prediction);
+
+/// The crossing of the edge from `a` to `b` that a prediction tells of, but for its edge. False if
+/// there is no line: two balls of one geometry that meet at a flat angle.
+bool cross_as_predicted(const Viewpoint& viewpoint, const LocateSettings& settings,
+                        const Prediction& prediction, Vec2f a, Vec2f b, const PredictedSide& first,
+                        const PredictedSide& second, Crossing& crossing);
+
 /// Finds where lines cross suspect edges, and classifies them. Between balls the crossing is
 /// computed and checked by one more sample; else the edge is bisected, all edges in step. Where a
 /// third geometry turns up in between, both crossings are kept; what proves to be smooth is
@@ -78,6 +95,10 @@ class Locator {
     void locate(const SampleGrid& grid, std::span<const SuspectEdge> edges,
                 const SurfaceFunction& describe, const SampleFunction& sample,
                 std::vector<Crossing>& crossings);
+    /// The same of some of the edges, by their indices; adds to the crossings.
+    void locate_some(const SampleGrid& grid, std::span<const SuspectEdge> edges,
+                     std::span<const std::uint32_t> some, const SurfaceFunction& describe,
+                     const SampleFunction& sample, std::vector<Crossing>& crossings);
 
   private:
     enum class State : std::uint8_t {
@@ -106,7 +127,7 @@ class Locator {
     };
 
     void start(const SampleGrid& grid, std::span<const SuspectEdge> edges,
-               const SurfaceFunction& describe);
+               std::span<const std::uint32_t> some, const SurfaceFunction& describe);
     void predict(Interval& interval) const;
     void step(const SampleFunction& sample);
     Vec2f next_point(const Interval& interval) const;
@@ -127,8 +148,6 @@ class Locator {
     bool has_crease(const Interval& interval) const;
     bool classify(const Interval& interval, Crossing& crossing) const;
     bool ends_at_rim(const Interval& interval) const;
-    bool classify_foreseen(const Interval& interval, Crossing& crossing) const;
-    float crease_strength(float angle) const;
     float jump_share(const Interval& interval) const;
     float facing(const Sample& sample) const;
     float slope(const Sample& sample) const;
@@ -140,7 +159,7 @@ class Locator {
     float least_turn_;                ///< of a crease, as a chord
     std::vector<float> jump_shares_;  ///< that must be left after so many steps
     std::vector<Interval> intervals_;
-    std::vector<std::uint32_t> order_, bins_;
+    std::vector<std::uint32_t> all_, order_, bins_;
     std::vector<std::size_t> active_;
     std::vector<Vec2f> points_;
     std::vector<Sample> samples_;

@@ -53,10 +53,6 @@ void AovWriter::put_strength(Block block, const Lanes<float>& strength) const {
     if (lines_) film_.put_plane(*lines_, block.x, block.y, strength);
 }
 
-void AovWriter::put_strength(int x, int y, int count, const float* strength) const {
-    if (lines_) film_.put_row(*lines_, x, y, count, strength);
-}
-
 void AovWriter::put_lines(int x0, int y0, int x1, int y1, const LinePlanes& lines) const {
     if (!line_planes_) return;
     for (int y = y0; y < y1; ++y) {

@@ -27,8 +27,6 @@ class AovWriter {
 
     void put(Block block, Vec2f offset, const HitPacket& hits) const;
     void put_strength(Block block, const Lanes<float>& strength) const;
-    /// Up to kLanes pixels from (x, y) on to the right.
-    void put_strength(int x, int y, int count, const float* strength) const;
     bool wants_line_planes() const { return line_planes_.has_value(); }
     /// Pixels [x0, x1) x [y0, y1), where the planes begin.
     void put_lines(int x0, int y0, int x1, int y1, const LinePlanes& lines) const;

@@ -34,12 +34,14 @@ Settings fewer_pixels(const Settings& settings, const Enlargement& enlargement) 
 FoundLines enlarged(const FoundLines& found, const Enlargement& enlargement, const Edges& large) {
     FoundLines result;
     result.tiles.resize(large.search_tiles.size());
-    for (const std::vector<ColoredSegment>& tile : found.tiles) {
-        for (ColoredSegment line : tile) {
-            line.segment.a = enlargement.enlarged(line.segment.a);
-            line.segment.b = enlargement.enlarged(line.segment.b);
-            const Vec2f middle = (line.segment.a + line.segment.b) * 0.5F;
-            result.tiles[large.search_tile_at(middle)].push_back(line);
+    for (const TileLines& tile : found.tiles) {
+        for (Segment line : tile.segments) {
+            if (!large.wanted.has(line.type)) continue;
+            line.a = enlargement.enlarged(line.a);
+            line.b = enlargement.enlarged(line.b);
+            const Vec2f middle = (line.a + line.b) * 0.5F;
+            result.tiles[large.search_tile_at(middle)].strokes.push_back(
+                make_ink_stroke(line, large.style_of(line)));
         }
     }
     result.thinning = found.thinning;
@@ -56,8 +58,8 @@ FoundLines enlarged(const FoundLines& found, const Enlargement& enlargement, con
 
 /// Enlarges the shaded pixels, and sharpens them along the lines.
 void enlarge_film(const Film& small, std::span<const Tile> tiles,
-                  const std::vector<std::vector<ColoredSegment>>& lines,
-                  const Enlargement& enlargement, WorkLoop& loop, Film& large) {
+                  const std::vector<TileLines>& lines, const Enlargement& enlargement,
+                  WorkLoop& loop, Film& large) {
     const PixelEnlarger enlarger(enlargement, small.display());
     constexpr std::size_t kRows = 32;
     const auto height = static_cast<std::size_t>(enlargement.large().height);
@@ -67,8 +69,9 @@ void enlarge_film(const Film& small, std::span<const Tile> tiles,
         }
     });
     // Each cell of the lattice belongs to one tile, so threads write different pixels.
-    loop.run(tiles.size(),
-             [&](std::size_t i, std::size_t) { enlarger.sharpen(tiles[i], lines[i], large); });
+    loop.run(tiles.size(), [&](std::size_t i, std::size_t) {
+        enlarger.sharpen(tiles[i], lines[i].segments, large);
+    });
 }
 
 RenderStats render_fewer_rays(const Pipeline& few, const Pipeline& full,
@@ -111,9 +114,10 @@ Film render_draft(const Scene& scene, const Tracer& tracer, const Settings& sett
     std::optional<Pipeline> small;
     std::optional<Pipeline> large;
     const LineOutput inked{.ink = wanted.draws_lines(), .drawing = nullptr};
+    const LineOutput kept{.ink = wanted.draws_lines(), .drawing = nullptr, .segments = true};
     RenderStats result;
     with_threads(wanted.threads, [&] {
-        small.emplace(scene, tracer, few, small_film, inked);
+        small.emplace(scene, tracer, few, small_film, kept);
         if (small->locates()) large.emplace(scene, tracer, wanted, film, inked, false);
     });
     if (large) {

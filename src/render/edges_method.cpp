@@ -69,6 +69,17 @@ Viewpoint::Affine affine(Vec3f at_zero, Vec3f dx, Vec3f dy) {
     return {to_double(at_zero), to_double(dx), to_double(dy)};
 }
 
+/// Every object is made of spheres that are told apart one by one.
+bool has_balls_only(const Pipeline& pipeline) {
+    const auto& objects = pipeline.scene.objects();
+    for (std::uint32_t k = 0; k < objects.size(); ++k) {
+        if (!std::holds_alternative<Spheres>(objects[k].shape) || !pipeline.ids.is_ball(k)) {
+            return false;
+        }
+    }
+    return !pipeline.goes_on();
+}
+
 }  // namespace
 
 Edges::Edges(const Pipeline& shared)
@@ -82,6 +93,7 @@ Edges::Edges(const Pipeline& shared)
           [](const Object& object) { return std::holds_alternative<Mesh>(object.shape); })),
       tones(shared.lines.drawing != nullptr && shared.settings.divides_tones()),
       smooth_shading(shared.settings.smoothing().kind == AntiAliasing::Kind::edges),
+      balls_only(!tones && has_balls_only(shared)),
       wanted(shared.settings.lines),
       styles_by_object(has_object_rules(shared.settings)),
       style_levels(levels_of(shared)),
@@ -134,9 +146,13 @@ std::size_t Edges::search_tile_at(Vec2f point) const {
         return std::clamp((static_cast<int>(std::floor(at)) + margin) / side, 0, tiles - 1);
     };
     const Size size = pipeline.settings.size;
-    const int across = (size.width + 2 * margin + side - 1) / side;
-    return static_cast<std::size_t>(tile(point.y, size.height) * across +
-                                    tile(point.x, size.width));
+    return static_cast<std::size_t>(tile(point.y, size.height)) * search_tiles_across() +
+           static_cast<std::size_t>(tile(point.x, size.width));
+}
+
+std::size_t Edges::search_tiles_across() const {
+    const int side = pipeline.settings.tile;
+    return static_cast<std::size_t>((pipeline.settings.size.width + 2 * margin + side - 1) / side);
 }
 
 std::size_t Edges::style_of(LineType type, std::uint32_t object) const {
@@ -146,7 +162,7 @@ std::size_t Edges::style_of(LineType type, std::uint32_t object) const {
 namespace {
 
 /// Hands out what the drawing needs of the segments of all tiles.
-void keep_lines(const Edges& edges, const std::vector<std::vector<ColoredSegment>>& found,
+void keep_lines(const Edges& edges, const std::vector<TileLines>& found,
                 const std::vector<std::vector<Segment>>& toned,
                 const std::vector<std::vector<Segment>>& hidden, Drawing& drawing) {
     drawing.spacing = 1.0F / static_cast<float>(edges.q);
@@ -156,9 +172,8 @@ void keep_lines(const Edges& edges, const std::vector<std::vector<ColoredSegment
     drawing.lower = Vec2f{static_cast<float>(first.x0), static_cast<float>(first.y0)} + half;
     drawing.upper = Vec2f{static_cast<float>(last.x1), static_cast<float>(last.y1)} + half;
     drawing.segments.clear();
-    for (const std::vector<ColoredSegment>& tile : found) {
-        for (const ColoredSegment& line : tile) {
-            Segment segment = line.segment;
+    for (const TileLines& tile : found) {
+        for (Segment segment : tile.segments) {
             const bool divides = segment.left != segment.right && segment.level == 0;
             if (!divides && !edges.wanted.has(segment.type)) continue;
             if (edges.tones) {
@@ -204,6 +219,19 @@ LineThinning thinning_of(const Edges& edges,
     return thinning;
 }
 
+/// Puts the pixels on the film to which lines of several tiles add.
+void finish_fringes(const Edges& edges, const std::vector<TileLines>& found, WorkLoop& loop) {
+    if (!edges.smooth_shading) return;
+    std::vector<const Fringe*> fringes;
+    for (const TileLines& tile : found) fringes.push_back(&tile.fringe);
+    const ColorPacket& empty = edges.pipeline.shader.background();
+    const PixelColor background{empty.r[0], empty.g[0], empty.b[0], empty.a[0]};
+    loop.run(found.size(), [&](std::size_t i, std::size_t) {
+        finish_fringe(edges.search_tiles, fringes, edges.search_tiles_across(), i, background,
+                      edges.pipeline.film);
+    });
+}
+
 template <class Worker>
 RenderStats total_of(const std::vector<std::unique_ptr<Worker>>& workers) {
     RenderStats total;
@@ -237,9 +265,8 @@ FoundLines find_lines(const Edges& edges, WorkLoop& loop, RenderStats& stats) {
         found.hidden[i] = behind[worker]->search(edges.search_tiles[i], *finders[worker]);
     });
 
-    if (edges.find_lines && edges.wanted.has(LineType::self_occlusion)) {
-        stats += mend_lines(edges, found.tiles, found.toned);
-    }
+    finish_fringes(edges, found.tiles, loop);
+    if (edges.mends_lines()) stats += mend_lines(edges, found.tiles, found.toned);
     found.thinning = thinning_of(edges, finders);
     stats += total_of(finders);
     stats += total_of(behind);
@@ -255,7 +282,9 @@ void add_hidden_strokes(const Edges& edges, FoundLines& found) {
     for (const Segment& stroke : hidden_strokes(edges, lines)) {
         // Where the tiles that draw look for lines.
         const Vec2f middle = (stroke.a + stroke.b) * 0.5F;
-        found.tiles[edges.search_tile_at(middle)].push_back({stroke, {}, {}});
+        TileLines& tile = found.tiles[edges.search_tile_at(middle)];
+        tile.strokes.push_back(make_ink_stroke(stroke, edges.style_of(stroke)));
+        if (edges.keeps_segments()) tile.segments.push_back(stroke);
     }
 }
 
@@ -275,7 +304,8 @@ RenderStats render_edges(const Pipeline& pipeline, const RenderControl& control)
     const Edges edges(pipeline);
     const int threads =
         pipeline.settings.threads > 0 ? pipeline.settings.threads : hardware_threads();
-    WorkLoop loop(threads, control, edges.search_tiles.size() + edges.draw_tiles.size());
+    const std::size_t fringes = edges.smooth_shading ? edges.search_tiles.size() : 0;
+    WorkLoop loop(threads, control, edges.search_tiles.size() + fringes + edges.draw_tiles.size());
     RenderStats stats;
     FoundLines found = find_lines(edges, loop, stats);
     if (pipeline.lines.drawing != nullptr) {

@@ -11,6 +11,7 @@
 #include "lines/line_type.h"
 #include "lines/locate.h"
 #include "lines/segment.h"
+#include "render/edge_smoothing.h"
 #include "render/face_map.h"
 #include "render/pipeline.h"
 #include "render/tiles.h"
@@ -19,10 +20,11 @@
 
 namespace ink {
 
-/// A line segment on its way from the pass that finds lines to the pass that draws them.
-struct ColoredSegment {
-    Segment segment;
-    std::array<float, 4> left, right;  ///< colours of the two sides, linear, premultiplied
+/// The lines of one tile on their way from the pass that finds them to the pass that draws.
+struct TileLines {
+    std::vector<InkStroke> strokes;  ///< to be inked
+    std::vector<Segment> segments;   ///< all, in full, where anything asks for more than ink
+    Fringe fringe;
 };
 
 /// The method's fixed parts, shared by all tiles.
@@ -33,7 +35,17 @@ struct Edges {
     std::size_t style_of(const Segment& segment) const;
     /// Index of the tile that a point was searched in.
     std::size_t search_tile_at(Vec2f point) const;
+    std::size_t search_tiles_across() const;
     std::size_t style_of(LineType type, std::uint32_t object) const;
+    /// Whether self-occlusions are made whole once all are found.
+    bool mends_lines() const {
+        return find_lines && wanted.has(LineType::self_occlusion) && !balls_only;
+    }
+    /// Whether lines are needed for more than their ink.
+    bool keeps_segments() const {
+        return mends_lines() || pipeline.lines.segments || pipeline.lines.drawing != nullptr ||
+               (pipeline.aovs && pipeline.aovs->wants_line_planes());
+    }
     bool wants_faces() const { return find_lines && has_meshes && wanted.has(LineType::mesh); }
 
     const Pipeline& pipeline;
@@ -44,6 +56,8 @@ struct Edges {
     bool has_meshes;
     bool tones;           ///< divide geometries into light and shade, as data
     bool smooth_shading;  ///< blend the colours of pixels that a line cuts
+    /// Every geometry is one ball, on which there are no lines.
+    bool balls_only;
     DetectSettings detect;
     LocateSettings locate;
     LineTypes wanted;
@@ -63,11 +77,11 @@ struct Edges {
 
 /// What the pass that finds lines leaves to the pass that draws them.
 struct FoundLines {
-    std::vector<std::vector<ColoredSegment>> tiles;  ///< of each of the tiles that were searched
-    std::vector<std::vector<Segment>> toned;         ///< likewise, see LineFinder::take_toned
-    std::vector<std::vector<Segment>> hidden;        ///< likewise, on surfaces behind
-    LineThinning thinning;                           ///< where they are dense
-    std::optional<FaceMap> faces;                    ///< for lines between faces
+    std::vector<TileLines> tiles;              ///< of each of the tiles that were searched
+    std::vector<std::vector<Segment>> toned;   ///< likewise, see LineFinder::take_toned
+    std::vector<std::vector<Segment>> hidden;  ///< likewise, on surfaces behind
+    LineThinning thinning;                     ///< where they are dense
+    std::optional<FaceMap> faces;              ///< for lines between faces
 };
 
 /// Shades the film and finds its lines.

@@ -50,9 +50,8 @@ float side_of(const Segment& segment, Vec2f point) {
 }
 
 /// Whether colours change across a line, from one side of its cell to another.
-bool divides(const ColoredSegment& line) {
-    const Segment& segment = line.segment;
-    return segment.spans_cell && segment.type != LineType::mesh && segment.type != LineType::ridge;
+bool divides(const Segment& line) {
+    return line.spans_cell && line.type != LineType::mesh && line.type != LineType::ridge;
 }
 
 /// A pixel of which some corners of its cell count, by their weights.
@@ -132,16 +131,15 @@ void PixelEnlarger::enlarge_row(int y, Film& film) const {
     film.put_display(0, y, out);
 }
 
-void PixelEnlarger::sharpen(const Tile& tile, std::span<const ColoredSegment> lines,
-                            Film& film) const {
+void PixelEnlarger::sharpen(const Tile& tile, std::span<const Segment> lines, Film& film) const {
     const auto cell_of = [](const Segment& s) {
         return std::pair{static_cast<int>(std::floor((s.a.x + s.b.x) * 0.5F - 0.5F)),
                          static_cast<int>(std::floor((s.a.y + s.b.y) * 0.5F - 0.5F))};
     };
     for (std::size_t first = 0; first < lines.size();) {
-        const auto cell = cell_of(lines[first].segment);
+        const auto cell = cell_of(lines[first]);
         std::size_t last = first + 1;
-        while (last < lines.size() && cell_of(lines[last].segment) == cell) ++last;
+        while (last < lines.size() && cell_of(lines[last]) == cell) ++last;
         const auto [x, y] = cell;
         if (x >= tile.x0 && x < tile.x1 && y >= tile.y0 && y < tile.y1) {
             sharpen_cell(x, y, lines.subspan(first, last - first), film);
@@ -150,7 +148,7 @@ void PixelEnlarger::sharpen(const Tile& tile, std::span<const ColoredSegment> li
     }
 }
 
-void PixelEnlarger::sharpen_cell(int column, int row, std::span<const ColoredSegment> lines,
+void PixelEnlarger::sharpen_cell(int column, int row, std::span<const Segment> lines,
                                  Film& film) const {
     if (std::ranges::none_of(lines, divides)) return;
     const Size size = pixels_.size;
@@ -179,11 +177,11 @@ void PixelEnlarger::sharpen_cell(int column, int row, std::span<const ColoredSeg
             const float below = point.y - places[0].y;
             std::array<float, 4> weights{(1 - right) * (1 - below), right * (1 - below),
                                          (1 - right) * below, right * below};
-            for (const ColoredSegment& line : lines) {
+            for (const Segment& line : lines) {
                 if (!divides(line)) continue;
-                const float side = side_of(line.segment, point);
+                const float side = side_of(line, point);
                 for (std::size_t k = 0; k < 4; ++k) {
-                    if (side * side_of(line.segment, places[k]) < 0.0F) weights[k] = 0.0F;
+                    if (side * side_of(line, places[k]) < 0.0F) weights[k] = 0.0F;
                 }
             }
             constexpr float kLeast = 1e-3F;

@@ -53,7 +53,7 @@ class PixelEnlarger {
     /// Mixes anew the pixels in a tile's cells that lines run through, from those pixels only that
     /// lie on the same side. The segments are those of the small picture, the ones of a cell in
     /// sequence; tiles may be done at the same time.
-    void sharpen(const Tile& tile, std::span<const ColoredSegment> lines, Film& film) const;
+    void sharpen(const Tile& tile, std::span<const Segment> lines, Film& film) const;
 
   private:
     /// Between which two columns or rows of the small picture one of the large picture lies.
@@ -62,7 +62,7 @@ class PixelEnlarger {
         std::uint32_t share;  ///< of the second, in 1 / 256
     };
     static std::vector<Between> between(int large, int small, float factor);
-    void sharpen_cell(int column, int row, std::span<const ColoredSegment> lines, Film& film) const;
+    void sharpen_cell(int column, int row, std::span<const Segment> lines, Film& film) const;
 
     Enlargement enlargement_;
     const DisplayImage& pixels_;

@@ -44,11 +44,10 @@ std::vector<Segment> HiddenLineFinder::search(const Tile& tile, const LineFinder
     keep_places(front);
     std::vector<Segment> hidden;
     for (const auto& layer : layers_) {
-        const std::vector<ColoredSegment> found = layer->search(tile);
+        const TileLines found = layer->search(tile);
         if (!layer->saw_anything()) break;
         mark_known(*layer);
-        for (const ColoredSegment& line : found) {
-            Segment segment = line.segment;
+        for (Segment segment : found.segments) {
             if (!edges_.wanted.has(segment.type)) continue;
             if (is_known(segment.a) && (!segment.spans_cell || is_known(segment.b))) continue;
             segment.hidden = true;

@@ -7,39 +7,26 @@
 
 namespace ink {
 
-namespace {
-
-int floor_divide(int a, int b) { return (a >= 0 ? a : a - b + 1) / b; }
-
-}  // namespace
-
-void LineDrawer::draw(const Tile& tile, const std::vector<std::vector<ColoredSegment>>& found) {
+void LineDrawer::draw(const Tile& tile, const std::vector<TileLines>& found) {
     const Timer timer(stats_.lines_ms);
-    gather(tile, found);
-    if (edges_.pipeline.aovs && edges_.pipeline.aovs->wants_line_planes()) write_planes(tile);
-    if (near_.empty() && !face_edges_) return;
-
-    ink_.begin(tile.x0, tile.y0, tile.x1 - tile.x0, tile.y1 - tile.y0);
-    if (edges_.smooth_shading) {
-        for (auto& plane : shift_) plane.assign(ink_.plane_size(), 0);
-        for (const ColoredSegment* line : near_) smooth(tile, *line);
+    if (edges_.pipeline.aovs && edges_.pipeline.aovs->wants_line_planes()) {
+        write_planes(tile, found);
     }
-    if (edges_.draw_lines) {
-        for (const ColoredSegment* line : near_) {
-            if (edges_.wanted.has(line->segment.type)) ink(line->segment);
-        }
+    if (!edges_.draw_lines) return;
+    {
+        const Timer phase(stats_.ink_ms);
+        gather(tile, found);
+        if (near_.empty() && !face_edges_) return;
+        ink_.begin(tile.x0, tile.y0, tile.x1 - tile.x0, tile.y1 - tile.y0);
+        for (const InkStroke* stroke : near_) ink_.draw(*stroke, width_scale(*stroke));
         if (face_edges_) ink_faces(tile);
         ink_.finish();
     }
     write(tile);
 }
 
-float LineDrawer::width_scale_of(const Segment& segment) const {
-    return thinning_.scale_at((segment.a + segment.b) * 0.5F, segment.level);
-}
-
-void LineDrawer::ink(const Segment& segment) {
-    ink_.draw(segment, edges_.style_of(segment), width_scale_of(segment));
+float LineDrawer::width_scale(const InkStroke& stroke) const {
+    return thinning_.scale_at((stroke.a + stroke.b) * 0.5F, stroke.direct ? 0 : 1);
 }
 
 /// Calls `draw(x, y, nearest edges, style, width)` for each block of the tile that has lines
@@ -88,13 +75,17 @@ void LineDrawer::ink_faces(const Tile& tile) {
         });
 }
 
-void LineDrawer::write_planes(const Tile& tile) {
+void LineDrawer::write_planes(const Tile& tile, const std::vector<TileLines>& found) {
     planes_.begin(tile.x0, tile.y0, tile.x1 - tile.x0, tile.y1 - tile.y0);
-    for (const ColoredSegment* line : near_) {
-        const Segment& segment = line->segment;
-        if (!edges_.draw_lines || !edges_.wanted.has(segment.type)) continue;
-        const LineStyle& style = edges_.ink.styles[edges_.style_of(segment)];
-        planes_.add(segment, style.width_px * width_scale_of(segment));
+    if (edges_.draw_lines) {
+        for_each_near_tile(tile, found, [&](const TileLines& lines) {
+            for (const Segment& segment : lines.segments) {
+                if (!edges_.wanted.has(segment.type)) continue;
+                const InkStroke stroke = make_ink_stroke(segment, edges_.style_of(segment));
+                const LineStyle& style = edges_.ink.styles[stroke.style];
+                planes_.add(segment, style.width_px * width_scale(stroke));
+            }
+        });
     }
     if (face_edges_ && edges_.draw_lines) add_face_planes(tile);
     edges_.pipeline.aovs->put_lines(tile.x0, tile.y0, tile.x1, tile.y1, planes_);
@@ -118,109 +109,57 @@ void LineDrawer::add_face_planes(const Tile& tile) {
         });
 }
 
-/// The segments that can change pixels of a tile.
-void LineDrawer::gather(const Tile& tile, const std::vector<std::vector<ColoredSegment>>& found) {
-    near_.clear();
-    // Tiles were searched on the same raster, moved by the margin; a segment leaves its tile by
-    // less than a pixel.
+/// Tiles whose lines may reach a tile. They were searched on the same raster, moved by the margin;
+/// a segment leaves its tile by less than a pixel.
+template <class Visit>
+void LineDrawer::for_each_near_tile(const Tile& tile, const std::vector<TileLines>& found,
+                                    Visit visit) {
     const int side = edges_.pipeline.settings.tile;
     const int reach = static_cast<int>(std::ceil(edges_.ink.reach())) + 1;
-    const Size size = edges_.pipeline.film.size();
-    const int across = (size.width + 2 * edges_.margin + side - 1) / side;
-    const int down = (size.height + 2 * edges_.margin + side - 1) / side;
+    const auto across = static_cast<int>(edges_.search_tiles_across());
+    const int down = static_cast<int>(found.size()) / across;
     const auto column = [&](int x) {
         return std::clamp((x + edges_.margin) / side, 0, across - 1);
     };
     const auto row = [&](int y) { return std::clamp((y + edges_.margin) / side, 0, down - 1); };
     for (int j = row(tile.y0 - reach); j <= row(tile.y1 + reach); ++j) {
         for (int i = column(tile.x0 - reach); i <= column(tile.x1 + reach); ++i) {
-            for (const ColoredSegment& line : found[static_cast<std::size_t>(j * across + i)]) {
-                const Segment& s = line.segment;
-                const bool near = std::max(s.a.x, s.b.x) > static_cast<float>(tile.x0 - reach) &&
-                                  std::min(s.a.x, s.b.x) < static_cast<float>(tile.x1 + reach) &&
-                                  std::max(s.a.y, s.b.y) > static_cast<float>(tile.y0 - reach) &&
-                                  std::min(s.a.y, s.b.y) < static_cast<float>(tile.y1 + reach);
-                if (near) near_.push_back(&line);
-            }
+            visit(found[static_cast<std::size_t>(j * across + i)]);
         }
     }
 }
 
-/// A lattice point stands for a square of the lattice's spacing. Of each quarter of the four
-/// squares about a cell that the segment crosses, the area beyond the segment takes the other
-/// side's colour.
-void LineDrawer::smooth(const Tile& tile, const ColoredSegment& line) {
-    const Segment& segment = line.segment;
-    // The two sides of a line on a smooth surface have one colour.
-    if (!segment.spans_cell || segment.type == LineType::mesh) return;
-    const Vec2f d = segment.b - segment.a;
-    const float length = std::sqrt(d.x * d.x + d.y * d.y);
-    if (length == 0.0F) return;
-    const auto q = static_cast<float>(edges_.q);
-    // Towards the segment's left: see Segment.
-    const Vec2f normal{d.y / length, -d.x / length};
-    const Vec2f middle = (segment.a + segment.b) * 0.5F;
-    const int cell_x = static_cast<int>(std::floor(middle.x * q - 0.5F));
-    const int cell_y = static_cast<int>(std::floor(middle.y * q - 0.5F));
-    for (int corner = 0; corner < 4; ++corner) {
-        const int i = cell_x + corner % 2;
-        const int j = cell_y + corner / 2;
-        const int x = floor_divide(i, edges_.q) - tile.x0;
-        const int y = floor_divide(j, edges_.q) - tile.y0;
-        if (x < 0 || y < 0 || x >= tile.x1 - tile.x0 || y >= tile.y1 - tile.y0) continue;
-        const Vec2f point{(static_cast<float>(i) + 0.5F) / q, (static_cast<float>(j) + 0.5F) / q};
-        const Vec2f quarter = point + Vec2f{(corner % 2 == 0 ? 0.25F : -0.25F) / q,
-                                            (corner / 2 == 0 ? 0.25F : -0.25F) / q};
-        const auto left_of = [&](Vec2f p) {
-            return (p.x - segment.a.x) * normal.x + (p.y - segment.a.y) * normal.y;
-        };
-        const bool on_left = left_of(point) > 0.0F;
-        // In units of the quarter's side.
-        const float to_left = left_of(quarter) * 2.0F * q;
-        const float beyond = square_coverage(on_left ? -to_left : to_left, normal.x, normal.y);
-        const float area = beyond * 0.25F / (q * q);
-        if (area == 0.0F) continue;
-        const std::size_t k = ink_.touch(x, y);
-        const auto& own = on_left ? line.left : line.right;
-        const auto& other = on_left ? line.right : line.left;
-        for (std::size_t c = 0; c < 4; ++c) {
-            const float change = std::clamp(other[c] - own[c], -kMostChange, kMostChange);
-            shift_[c][k] +=
-                static_cast<std::int32_t>(std::floor(area * change * kFixedPoint + 0.5F));
+/// The strokes that can change pixels of a tile.
+void LineDrawer::gather(const Tile& tile, const std::vector<TileLines>& found) {
+    near_.clear();
+    const float reach = std::ceil(edges_.ink.reach()) + 1.0F;
+    const float left = static_cast<float>(tile.x0) - reach;
+    const float right = static_cast<float>(tile.x1) + reach;
+    const float top = static_cast<float>(tile.y0) - reach;
+    const float bottom = static_cast<float>(tile.y1) + reach;
+    for_each_near_tile(tile, found, [&](const TileLines& lines) {
+        for (const InkStroke& s : lines.strokes) {
+            const bool near = std::max(s.a.x, s.b.x) > left && std::min(s.a.x, s.b.x) < right &&
+                              std::max(s.a.y, s.b.y) > top && std::min(s.a.y, s.b.y) < bottom;
+            if (near) near_.push_back(&s);
         }
-    }
+    });
 }
 
 void LineDrawer::write(const Tile& tile) {
-    Film& film = edges_.pipeline.film;
-    for (int y = tile.y0; y < tile.y1; ++y) {
-        for (int x = tile.x0; x < tile.x1; x += kLanes) {
-            if (!ink_.touched(x - tile.x0, y - tile.y0)) continue;
-            const std::size_t k = ink_.index(x - tile.x0, y - tile.y0);
-            Film::TouchUp change{};
-            if (edges_.smooth_shading) {
-                for (std::size_t c = 0; c < 4; ++c) {
-                    for (int i = 0; i < kLanes; ++i) {
-                        shift_run_[c][i] =
-                            static_cast<float>(shift_[c][k + static_cast<std::size_t>(i)]) /
-                            kFixedPoint;
-                    }
-                    change.shift[c] = shift_run_[c].data();
-                }
-            }
-            if (!ink_.empty()) {
-                change.ink_alpha = ink_.alpha() + k;
-                change.ink_color = ink_.uniform_color();
-                for (std::size_t c = 0; c < 3 && !change.ink_color; ++c) {
-                    change.ink_colors[c] = ink_.color()[c].data() + k;
-                }
-            }
-            const int count = std::min(kLanes, tile.x1 - x);
-            film.touch_up(x, y, count, change);
-            if (edges_.pipeline.aovs && !ink_.empty()) {
-                edges_.pipeline.aovs->put_strength(x, y, count, change.ink_alpha);
-            }
+    if (ink_.empty()) return;
+    const Timer phase(stats_.blend_ms);
+    const auto across = ink_.blocks_across();
+    for (std::size_t k = 0; k < ink_.blocks(); ++k) {
+        if (!ink_.touched(k)) continue;
+        const int x = tile.x0 + static_cast<int>(k % across) * kBlockSide;
+        const int y = tile.y0 + static_cast<int>(k / across) * kBlockSide;
+        Film::BlockInk ink{ink_.alpha_of_block(k), ink_.uniform_color(), {}};
+        for (std::size_t c = 0; c < 3 && !ink.color; ++c) {
+            ink.colors[c] = ink_.color()[c].data() + k * kLanes;
         }
+        edges_.pipeline.film.lay_ink(x, y, ink);
+        if (edges_.pipeline.aovs) edges_.pipeline.aovs->put_strength(Block{x, y}, ink.alpha);
     }
 }
 

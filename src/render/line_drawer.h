@@ -26,24 +26,21 @@ class LineDrawer {
         faces_ = faces;
     }
 
-    void draw(const Tile& tile, const std::vector<std::vector<ColoredSegment>>& found);
+    void draw(const Tile& tile, const std::vector<TileLines>& found);
 
     RenderStats stats() const { return stats_; }
 
   private:
-    static constexpr float kFixedPoint = 1 << 22;
-    static constexpr float kMostChange = 64.0F;
-
-    void gather(const Tile& tile, const std::vector<std::vector<ColoredSegment>>& found);
-    void smooth(const Tile& tile, const ColoredSegment& line);
+    template <class Visit>
+    void for_each_near_tile(const Tile& tile, const std::vector<TileLines>& found, Visit visit);
+    void gather(const Tile& tile, const std::vector<TileLines>& found);
     void write(const Tile& tile);
 
-    void ink(const Segment& segment);
-    float width_scale_of(const Segment& segment) const;
+    float width_scale(const InkStroke& stroke) const;
     template <class Draw>
     void for_each_face_block(const Tile& tile, Draw draw);
     void ink_faces(const Tile& tile);
-    void write_planes(const Tile& tile);
+    void write_planes(const Tile& tile, const std::vector<TileLines>& found);
     void add_face_planes(const Tile& tile);
 
     const Edges& edges_;
@@ -52,11 +49,7 @@ class LineDrawer {
     const FaceMap* faces_ = nullptr;
     std::optional<FaceEdges> face_edges_;
     LinePlanes planes_;
-    std::vector<const ColoredSegment*> near_;  ///< segments within reach of the tile
-    /// What smoothing adds to each pixel's colour: linear, premultiplied R, G, B, A. In fixed
-    /// point, for a sum that does not depend on the order of segments, and so not on the tiles.
-    std::array<std::vector<std::int32_t>, 4> shift_;
-    std::array<Lanes<float>, 4> shift_run_;
+    std::vector<const InkStroke*> near_;  ///< those within reach of the tile
     RenderStats stats_;
 };
 

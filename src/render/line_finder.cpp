@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "base/multiversion.h"
 
@@ -18,6 +19,21 @@ ScreenBox screen_box(const Block& block, float spacing) {
 }
 
 }  // namespace
+
+TileLines LineFinder::search(const Tile& tile) {
+    found_ = {};
+    strokes_.clear();
+    smoothing_.begin(tile);
+    trace_lattice(tile);
+    if (faces_ != nullptr) map_faces(tile);
+    if (front_) shade();
+    find_lines();
+    if (specular_) add_specular();
+    if (ridges_) add_ridges(tile);
+    if (front_) put_pixels(tile);
+    found_.strokes = strokes_;  // no larger than they are
+    return std::move(found_);
+}
 
 void LineFinder::trace_lattice(const Tile& tile) {
     const Timer timer(stats_.trace_ms);
@@ -87,38 +103,41 @@ void locate_hits(const RayPacket& rays, const HitPacket& hits, const NormalPacke
 
 void LineFinder::fill_grid(std::size_t block) {
     Lanes<GeometryId> ids;
-    std::array<Lanes<float>, 7> values;
     edges_.pipeline.ids.resolve(hits_[block], ids);
+    if (ids_only_) return copy_to_grid(block, ids.data(), grid_.id.data());
+    std::array<Lanes<float>, 7> values;
     const Shader& shader = edges_.pipeline.shader;
     NormalPacket separate;
     if (shader.has_line_normals()) shader.line_normals(hits_[block], separate);
     const NormalPacket& normals = shader.has_line_normals() ? separate : normals_[block];
     locate_hits(sampler_.packets()[block], hits_[block], normals, values);
-    const int i0 = blocks_[block].x - grid_.x0;
-    const int j0 = blocks_[block].y - grid_.y0;
-    const int block_columns = blocks_[block].columns;
-    const int block_rows = blocks_[block].rows;
+    copy_to_grid(block, ids.data(), grid_.id.data());
     const std::array<float*, 7> planes{grid_.px.data(), grid_.py.data(), grid_.pz.data(),
                                        grid_.nx.data(), grid_.ny.data(), grid_.nz.data(),
                                        grid_.t.data()};
-    // A size known to the compiler makes each row one move.
-    const auto copy_rows = [&](const auto* from, auto* to, auto count) {
-        for (int j = 0; j < block_rows; ++j) {
-            std::copy_n(from + j * kBlockSide, count(), to + grid_.index(i0, j0 + j));
-        }
-    };
-    const auto copy_plane = [&](const auto* from, auto* to) {
-        if (block_columns == kBlockSide) {
-            copy_rows(from, to, [] { return kBlockSide; });
-        } else {
-            copy_rows(from, to, [&] { return block_columns; });
-        }
-    };
-    copy_plane(ids.data(), grid_.id.data());
-    for (std::size_t k = 0; k < planes.size(); ++k) copy_plane(values[k].data(), planes[k]);
+    for (std::size_t k = 0; k < planes.size(); ++k) {
+        copy_to_grid(block, values[k].data(), planes[k]);
+    }
 }
 
-void LineFinder::shade(const Tile& tile) {
+/// Copies the values of a block to their places in a plane of the grid.
+template <class T>
+void LineFinder::copy_to_grid(std::size_t block, const T* from, T* plane) const {
+    const Block& place = blocks_[block];
+    T* to = plane + grid_.index(place.x - grid_.x0, place.y - grid_.y0);
+    for (int j = 0; j < place.rows; ++j) {
+        // A size known to the compiler makes each row one move.
+        if (place.columns == kBlockSide) {
+            std::copy_n(from, kBlockSide, to);
+        } else {
+            std::copy_n(from, place.columns, to);
+        }
+        from += kBlockSide;
+        to += grid_.width;
+    }
+}
+
+void LineFinder::shade() {
     const Timer timer(stats_.shade_ms);
     const Pipeline& pipeline = edges_.pipeline;
     colors_.resize(blocks_.size());
@@ -132,17 +151,23 @@ void LineFinder::shade(const Tile& tile) {
         specular_->follow(grid_, {blocks_, sampler_.packets(), sampler_.points(), hits_, normals_},
                           colors_);
     }
-    const Size size = pipeline.film.size();
+}
+
+void LineFinder::put_pixels(const Tile& tile) {
+    const Timer timer(stats_.shade_ms);
+    const Timer phase(stats_.film_ms);
+    const Size size = edges_.pipeline.film.size();
     for (int y = std::max(tile.y0, 0); y < std::min(tile.y1, size.height); y += kBlockSide) {
         for (int x = std::max(tile.x0, 0); x < std::min(tile.x1, size.width); x += kBlockSide) {
-            put_pixels(x, y);
-            if (pipeline.aovs) put_aovs({x, y});
+            put_block(x, y);
+            if (edges_.pipeline.aovs) put_aovs({x, y});
         }
     }
+    if (smooths_) keep_fringe(tile);
 }
 
 /// The block of pixels at (x, y): one lattice block, or the mean over q x q of them.
-void LineFinder::put_pixels(int x, int y) {
+void LineFinder::put_block(int x, int y) {
     Film& film = edges_.pipeline.film;
     const int q = edges_.q;
     const int i0 = (x * q - grid_.x0) / kBlockSide;
@@ -152,25 +177,48 @@ void LineFinder::put_pixels(int x, int y) {
         const std::uint32_t k = block_index(i0 + n % q, j0 + n / q);
         any |= k != kEmptyBlock && seen_[k] != 0;
     }
-    if (!any) return film.put_background(x, y);
-    if (q == 1) return film.put(x, y, colors_[block_index(i0, j0)]);
+    const bool changes = smooths_ && smoothing_.changes(x, y);
+    if (!any && !changes) return film.put_background(x, y);
+    if (q == 1 && !changes) return film.put(x, y, colors_[block_index(i0, j0)]);
 
-    ColorPacket mean{};
-    const float weight = 1.0F / static_cast<float>(q * q);
-    for (int lane = 0; lane < kLanes; ++lane) {
-        std::array<float, 4> sum{};
-        for (int n = 0; n < q * q; ++n) {
-            const int i = (x + lane % kBlockSide) * q + n % q - grid_.x0;
-            const int j = (y + lane / kBlockSide) * q + n / q - grid_.y0;
-            const std::array<float, 4> color = color_at(i, j);
-            for (std::size_t c = 0; c < 4; ++c) sum[c] += color[c] * weight;
-        }
-        mean.r[lane] = sum[0];
-        mean.g[lane] = sum[1];
-        mean.b[lane] = sum[2];
-        mean.a[lane] = sum[3];
+    ColorPacket mean;
+    if (q == 1) {
+        const std::uint32_t k = block_index(i0, j0);
+        mean = k == kEmptyBlock ? edges_.pipeline.shader.background() : colors_[k];
     }
+    for (int lane = 0; q > 1 && lane < kLanes; ++lane) {
+        const PixelColor color = pixel_color(x + lane % kBlockSide, y + lane / kBlockSide);
+        mean.r[lane] = color[0];
+        mean.g[lane] = color[1];
+        mean.b[lane] = color[2];
+        mean.a[lane] = color[3];
+    }
+    if (changes) smoothing_.apply(x, y, mean);
     film.put(x, y, mean);
+}
+
+/// Linear, premultiplied colour of a pixel of the tile, before smoothing.
+PixelColor LineFinder::pixel_color(int x, int y) const {
+    const int q = edges_.q;
+    const int i0 = x * q - grid_.x0;
+    const int j0 = y * q - grid_.y0;
+    if (q == 1) return color_at(i0, j0);
+    const float weight = 1.0F / static_cast<float>(q * q);
+    PixelColor sum{};
+    for (int n = 0; n < q * q; ++n) {
+        const PixelColor color = color_at(i0 + n % q, j0 + n / q);
+        for (std::size_t c = 0; c < 4; ++c) sum[c] += color[c] * weight;
+    }
+    return sum;
+}
+
+/// Keeps what is needed to finish the pixels to which lines of other tiles may add.
+void LineFinder::keep_fringe(const Tile& tile) {
+    Fringe& fringe = found_.fringe;
+    smoothing_.take_fringe(fringe);
+    if (!saw_anything_) return;
+    for (int x = tile.x0; x < tile.x1; ++x) fringe.colors.push_back(pixel_color(x, tile.y0));
+    for (int y = tile.y0 + 1; y < tile.y1; ++y) fringe.colors.push_back(pixel_color(tile.x0, y));
 }
 
 /// What pixel centres see, whatever the lattice.
@@ -186,7 +234,7 @@ std::uint32_t LineFinder::block_index(int i, int j) const {
 }
 
 /// Linear, premultiplied colour of a point of the grid.
-std::array<float, 4> LineFinder::color_at(int i, int j) const {
+PixelColor LineFinder::color_at(int i, int j) const {
     const std::uint32_t k = block_index(i / kBlockSide, j / kBlockSide);
     const bool empty = k == kEmptyBlock;
     const ColorPacket& colors = empty ? edges_.pipeline.shader.background() : colors_[k];
@@ -194,25 +242,36 @@ std::array<float, 4> LineFinder::color_at(int i, int j) const {
     return {colors.r[lane], colors.g[lane], colors.b[lane], colors.a[lane]};
 }
 
-std::vector<ColoredSegment> LineFinder::find_lines() {
+void LineFinder::find_lines() {
     const Timer timer(stats_.lines_ms);
-    if (!edges_.find_lines && !edges_.smooth_shading) return {};
-    detect(grid_, edges_.detect, suspects_);
-    std::erase_if(suspects_, [this](const SuspectEdge& edge) { return is_smooth(edge); });
-    locator_.locate(grid_, suspects_, describe_, sample_, crossings_);
-    if (faces_ != nullptr) cross_faces();
-    connector_.connect(grid_, suspects_, crossings_, segments_);
-    if (front_ && edges_.tones) find_tones();
-    if (faces_ != nullptr) drop_unmarked_faces();
-    stats_.crossings += crossings_.size();
-
-    std::vector<ColoredSegment> found;
-    found.reserve(segments_.size());
-    keep(found);
-    return found;
+    if (!edges_.find_lines && !edges_.smooth_shading) return;
+    if (front_ && edges_.tones) measure_brightness();
+    {
+        const Timer phase(stats_.detect_ms);
+        DetectSettings settings = edges_.detect;
+        if (ids_only_) settings.depths = settings.normals = false;
+        detect(grid_, settings, suspects_);
+        if (!ids_only_) {
+            std::erase_if(suspects_, [this](const SuspectEdge& edge) { return is_smooth(edge); });
+        }
+    }
+    {
+        const Timer phase(stats_.locate_ms);
+        locate();
+        if (faces_ != nullptr) cross_faces();
+    }
+    {
+        const Timer phase(stats_.connect_ms);
+        connector_.connect(grid_, suspects_, crossings_, segments_);
+        if (front_ && edges_.tones) find_tones();
+        if (faces_ != nullptr) drop_unmarked_faces();
+        stats_.crossings += crossings_.size();
+    }
+    keep();
 }
 
-void LineFinder::find_tones() {
+/// While the sampler has the rays of the lattice.
+void LineFinder::measure_brightness() {
     brightness_.assign(grid_.id.size(), 1.0F);
     Lanes<float> bright;
     for (std::size_t k = 0; k < blocks_.size(); ++k) {
@@ -226,6 +285,9 @@ void LineFinder::find_tones() {
             }
         }
     }
+}
+
+void LineFinder::find_tones() {
     tone_connector_.connect(grid_, brightness_, suspects_, crossings_, toned_);
     // Lines between faces divide none.
     for (Segment segment : segments_) {
@@ -235,46 +297,111 @@ void LineFinder::find_tones() {
     }
 }
 
-/// Adds the segments at hand, with the colours of their sides.
-void LineFinder::keep(std::vector<ColoredSegment>& found) {
+/// Keeps the segments at hand, and smooths the shading along them.
+void LineFinder::keep() {
+    if (keeps_segments_) {
+        found_.segments.insert(found_.segments.end(), segments_.begin(), segments_.end());
+    }
+    if (front_ && edges_.find_lines) {
+        const Timer phase(stats_.connect_ms);
+        for (const Segment& segment : segments_) keep_stroke(segment);
+    }
+    if (smooths_) smooth();
+}
+
+void LineFinder::keep_stroke(const Segment& segment) {
+    if (!edges_.wanted.has(segment.type)) return;
+    const InkStroke stroke = make_ink_stroke(segment, edges_.style_of(segment));
+    // Those between faces are counted by add_face_density.
+    if (segment.type != LineType::mesh) count(stroke);
+    if (edges_.draw_lines) strokes_.push_back(stroke);
+}
+
+void LineFinder::smooth() {
+    const Timer phase(stats_.blend_ms);
+    const auto color = [&](std::uint32_t index) {
+        const auto width = static_cast<std::uint32_t>(grid_.width);
+        return color_at(static_cast<int>(index % width), static_cast<int>(index / width));
+    };
     for (const Segment& segment : segments_) {
-        const auto color = [&](std::uint32_t index) -> std::array<float, 4> {
-            if (!front_) return {};
-            const auto width = static_cast<std::uint32_t>(grid_.width);
-            return color_at(static_cast<int>(index % width), static_cast<int>(index / width));
-        };
-        found.push_back({segment, color(segment.left_sample), color(segment.right_sample)});
-        // Those between faces are counted by add_face_density.
-        if (front_ && edges_.find_lines && edges_.wanted.has(segment.type) &&
-            segment.type != LineType::mesh) {
-            count(segment);
-        }
+        // The two sides of a line on a smooth surface have one colour.
+        if (!segment.spans_cell || segment.type == LineType::mesh) continue;
+        smoothing_.add(segment, color(segment.left_sample), color(segment.right_sample));
     }
 }
 
 /// What is seen in a mirror must not thin the lines of the mirror.
-void LineFinder::count(const Segment& segment) {
-    const float width = edges_.ink.styles[edges_.style_of(segment)].width_px;
-    density_.add(segment, width);
-    if (specular_ && segment.level == 0) direct_density_.add(segment, width);
+void LineFinder::count(const InkStroke& stroke) {
+    const float width = edges_.ink.styles[stroke.style].width_px;
+    density_.add(stroke, width);
+    if (specular_ && stroke.direct) direct_density_.add(stroke, width);
 }
 
-void LineFinder::add_specular(std::vector<ColoredSegment>& found) {
+void LineFinder::add_specular() {
     const Timer timer(stats_.lines_ms);
     if (!edges_.find_lines && !edges_.smooth_shading) return;
     segments_.clear();
     specular_->search(suspects_, crossings_, segments_);
-    keep(found);
+    keep();
 }
 
 /// The colours of a ridge's two sides are alike: smoothing has nothing to do there.
-void LineFinder::add_ridges(const Tile& tile, std::vector<ColoredSegment>& found) {
+void LineFinder::add_ridges(const Tile& tile) {
     const Timer timer(stats_.lines_ms);
+    const Timer phase(stats_.ridges_ms);
     segments_.clear();
     ridges_->search(tile, segments_);
-    for (const Segment& segment : segments_) {
-        found.push_back({segment, {}, {}});
-        count(segment);
+    if (keeps_segments_) {
+        found_.segments.insert(found_.segments.end(), segments_.begin(), segments_.end());
+    }
+    for (const Segment& segment : segments_) keep_stroke(segment);
+}
+
+/// Between balls by computing, between others by asking for samples.
+void LineFinder::locate() {
+    crossings_.clear();
+    others_.clear();
+    ball_edges_.clear();
+    for (std::uint32_t k = 0; k < suspects_.size(); ++k) {
+        const SuspectEdge& edge = suspects_[k];
+        BallEdge& balls = ball_edges_.emplace_back();
+        balls.edge = k;
+        const bool computable =
+            front_ && see_ball(edge.i, edge.j, balls.first) &&
+            see_ball(edge.i + (edge.down ? 0 : 1), edge.j + (edge.down ? 1 : 0), balls.second) &&
+            balls.first.surface != balls.second.surface;
+        if (computable) continue;
+        ball_edges_.pop_back();
+        others_.push_back(k);
+    }
+    ball_locator_.locate(grid_, suspects_, ball_edges_, identify_, crossings_, others_);
+    locator_.locate_some(grid_, suspects_, others_, describe_, sample_, crossings_);
+}
+
+/// Whether a point of the grid saw a ball or the background, and which.
+bool LineFinder::see_ball(int i, int j, BallHit& hit) const {
+    const std::uint32_t block = block_index(i / kBlockSide, j / kBlockSide);
+    if (block == kEmptyBlock) return true;
+    const HitPacket& hits = hits_[block];
+    const int lane = j % kBlockSide * kBlockSide + i % kBlockSide;
+    const std::uint32_t object = hits.object[lane];
+    if (object == kNoObject) return true;
+    hit.id = grid_.id[grid_.index(i, j)];
+    hit.surface = {object, hits.primitive[lane]};
+    hit.t = hits.t[lane];
+    hit.ball = edges_.surfaces.ball(object, hits.primitive[lane]);
+    return static_cast<bool>(hit.ball);
+}
+
+void LineFinder::identify(std::span<const Vec2f> points, std::span<SurfaceKey> out) {
+    if (points.empty()) return;
+    sampler_.identify_points(points, point_hits_);
+    for (std::size_t n = 0; n < points.size(); ++n) {
+        const HitPacket& hits = point_hits_[n / kLanes];
+        const auto lane = static_cast<int>(n % kLanes);
+        const bool miss = hits.object[lane] == kNoObject;
+        out[sampler_.order()[n]] =
+            miss ? SurfaceKey{} : SurfaceKey{hits.object[lane], hits.primitive[lane]};
     }
 }
 
@@ -302,6 +429,17 @@ void LineFinder::describe(std::size_t point, Sample& sample) const {
     const LatticeHit hit = hit_at(static_cast<int>(point % width), static_cast<int>(point / width));
     edges_.surfaces.describe(*hit.hits, hit.lane, sample);
     if (!front_) sample.ball = {};  // its outline and seams may lie on another layer
+    if (!ids_only_) return;
+    // Rarely asked for: the ray is made once more.
+    const Vec2f place =
+        grid_.point(static_cast<int>(point % width), static_cast<int>(point / width));
+    RayPacket ray;
+    edges_.pipeline.camera.make_rays(Lanes<float>::filled(place.x), Lanes<float>::filled(place.y),
+                                     ray);
+    sample.t = hit.hits->t[hit.lane];
+    sample.position = Vec3f{ray.origin_x[0], ray.origin_y[0], ray.origin_z[0]} +
+                      Vec3f{ray.dir_x[0], ray.dir_y[0], ray.dir_z[0]} * sample.t;
+    sample.normal = sample.facet;
 }
 
 /// Keeps what pixel centres, or the lattice points next to them, see.

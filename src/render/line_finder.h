@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "lines/ball_locator.h"
 #include "lines/connect.h"
 #include "lines/density.h"
 #include "lines/detect.h"
@@ -35,16 +36,8 @@ class LineFinder {
     LineFinder(const Edges& edges, const FrameTracer& behind)
         : LineFinder(edges, behind, false, nullptr) {}
 
-    /// Design: trace the lattice, detect, locate, connect. Shades the tile's pixels on the way.
-    std::vector<ColoredSegment> search(const Tile& tile) {
-        trace_lattice(tile);
-        if (faces_ != nullptr) map_faces(tile);
-        if (front_) shade(tile);
-        std::vector<ColoredSegment> found = find_lines();
-        if (specular_) add_specular(found);
-        if (ridges_) add_ridges(tile, found);
-        return found;
-    }
+    /// Traces the lattice, detects, locates and connects; shades the tile's pixels on the way.
+    TileLines search(const Tile& tile);
 
     /// More samples, anywhere; faster in the part of the screen that was entered last.
     const SampleFunction& more_samples() const { return sample_; }
@@ -79,6 +72,7 @@ class LineFinder {
     LineFinder(const Edges& edges, const FrameTracer& frame, bool front, FaceMap* faces)
         : edges_(edges),
           front_(front),
+          ids_only_(front && edges.balls_only),
           faces_(faces),
           sampler_(frame, edges.pipeline.camera, edges.q),
           pixel_sampler_(frame, edges.pipeline.camera),
@@ -86,10 +80,18 @@ class LineFinder {
           sample_([this](std::span<const Vec2f> points, std::span<Sample> out) {
               sample(points, out);
           }),
+          ball_locator_(edges.viewpoint, edges.locate),
+          identify_([this](std::span<const Vec2f> points, std::span<SurfaceKey> out) {
+              identify(points, out);
+          }),
           describe_([this](std::size_t point, Sample& sample) { describe(point, sample); }),
+          smoothing_(edges.q),
+          smooths_(front && edges.smooth_shading &&
+                   edges.pipeline.settings.compose != Compose::lines),
+          keeps_segments_(!front || edges.keeps_segments()),
           density_(edges.no_lines),
           direct_density_(edges.no_lines) {
-        if (front && edges.find_lines && edges.wanted.has(LineType::ridge)) {
+        if (front && edges.find_lines && edges.wanted.has(LineType::ridge) && !edges.balls_only) {
             ridges_.emplace(edges.pipeline, edges.q);
         }
         if (front && edges.pipeline.goes_on()) specular_.emplace(edges);
@@ -97,15 +99,22 @@ class LineFinder {
 
     void trace_lattice(const Tile& tile);
     void fill_grid(std::size_t block);
-    void shade(const Tile& tile);
-    void put_pixels(int x, int y);
+    template <class T>
+    void copy_to_grid(std::size_t block, const T* from, T* plane) const;
+    void shade();
+    void put_pixels(const Tile& tile);
+    void put_block(int x, int y);
+    void keep_fringe(const Tile& tile);
     void put_aovs(Block block);
-    std::vector<ColoredSegment> find_lines();
+    void find_lines();
+    void measure_brightness();
     void find_tones();
-    void keep(std::vector<ColoredSegment>& found);
-    void count(const Segment& segment);
-    void add_specular(std::vector<ColoredSegment>& found);
-    void add_ridges(const Tile& tile, std::vector<ColoredSegment>& found);
+    void keep();
+    void keep_stroke(const Segment& segment);
+    void smooth();
+    void count(const InkStroke& stroke);
+    void add_specular();
+    void add_ridges(const Tile& tile);
     void sample(std::span<const Vec2f> points, std::span<Sample> out);
     struct LatticeHit {
         const HitPacket* hits;
@@ -114,6 +123,9 @@ class LineFinder {
     LatticeHit hit_at(int i, int j) const;
     bool is_smooth(const SuspectEdge& edge) const;
     void describe(std::size_t point, Sample& sample) const;
+    void locate();
+    bool see_ball(int i, int j, BallHit& hit) const;
+    void identify(std::span<const Vec2f> points, std::span<SurfaceKey> out);
     void map_faces(const Tile& tile);
     void add_face_density(std::size_t block);
     void cross_faces();
@@ -122,19 +134,24 @@ class LineFinder {
     void mark(int i, int j);
     bool marked(int i, int j) const;
     std::uint32_t block_index(int i, int j) const;
-    std::array<float, 4> color_at(int i, int j) const;
+    PixelColor color_at(int i, int j) const;
+    PixelColor pixel_color(int x, int y) const;
 
     static constexpr std::uint32_t kEmptyBlock = 0xFFFFFFFFU;
     static constexpr std::uint8_t kCrossedRight = 1, kCrossedDown = 2, kMarked = 4;
 
     const Edges& edges_;
     bool front_;
+    /// Whether lines depend on IDs alone: the grid keeps nothing else.
+    bool ids_only_;
     bool saw_anything_ = false;
     FaceMap* faces_;
     Sampler sampler_;
     Sampler pixel_sampler_;
     Locator locator_;
     SampleFunction sample_;
+    BallLocator ball_locator_;
+    IdentifyFunction identify_;
     SurfaceFunction describe_;
     std::optional<RidgeSearch> ridges_;
     std::optional<SpecularSearch> specular_;
@@ -149,6 +166,8 @@ class LineFinder {
     std::vector<std::uint8_t> seen_;
     std::vector<HitPacket> point_hits_;
     std::vector<SuspectEdge> suspects_;
+    std::vector<BallEdge> ball_edges_;
+    std::vector<std::uint32_t> others_;  ///< suspects that are not between balls
     std::vector<Crossing> crossings_;
     /// A point of the grid: kCrossedRight, kCrossedDown if its edge in that direction has a
     /// crossing; kMarked if lines between faces are searched for in its cell.
@@ -161,6 +180,11 @@ class LineFinder {
     ToneConnector tone_connector_;
     std::vector<float> brightness_;  ///< of the grid's points, if tones are told apart
     std::vector<Segment> toned_;
+    TileLines found_;
+    std::vector<InkStroke> strokes_;
+    EdgeSmoothing smoothing_;
+    bool smooths_;         ///< the shading along lines
+    bool keeps_segments_;  ///< and not only their strokes
     LineDensity density_, direct_density_;
     RenderStats stats_;
 };

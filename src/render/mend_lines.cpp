@@ -34,24 +34,34 @@ void repair(const Edges& edges, const FoldRepairs& repairs, std::span<const Segm
     }
 }
 
+/// Makes a tile's strokes anew from its segments.
+void make_strokes(const Edges& edges, TileLines& tile) {
+    tile.strokes.clear();
+    for (const Segment& segment : tile.segments) {
+        if (!edges.draw_lines || !edges.wanted.has(segment.type)) continue;
+        tile.strokes.push_back(make_ink_stroke(segment, edges.style_of(segment)));
+    }
+}
+
 }  // namespace
 
-RenderStats mend_lines(const Edges& edges, std::vector<std::vector<ColoredSegment>>& found,
+RenderStats mend_lines(const Edges& edges, std::vector<TileLines>& found,
                        std::vector<std::vector<Segment>>& toned) {
     RenderStats stats;
     const Timer timer(stats.lines_ms);
-    const auto is_fold = [](const ColoredSegment& line) {
-        return line.segment.type == LineType::self_occlusion && line.segment.level == 0;
+    const auto is_fold = [](const Segment& segment) {
+        return segment.type == LineType::self_occlusion && segment.level == 0;
     };
-    if (std::ranges::none_of(
-            found, [&](const auto& tile) { return std::ranges::any_of(tile, is_fold); })) {
+    if (std::ranges::none_of(found, [&](const TileLines& tile) {
+            return std::ranges::any_of(tile.segments, is_fold);
+        })) {
         return stats;
     }
     std::vector<Segment> lines;
     std::vector<std::pair<std::uint32_t, std::uint32_t>> places;  // tile, and index within it
     for (std::uint32_t tile = 0; tile < found.size(); ++tile) {
-        for (std::uint32_t k = 0; k < found[tile].size(); ++k) {
-            const Segment& segment = found[tile][k].segment;
+        for (std::uint32_t k = 0; k < found[tile].segments.size(); ++k) {
+            const Segment& segment = found[tile].segments[k];
             if (segment.level != 0 || segment.type == LineType::mesh) continue;
             lines.push_back(segment);
             places.emplace_back(tile, k);
@@ -66,13 +76,20 @@ RenderStats mend_lines(const Edges& edges, std::vector<std::vector<ColoredSegmen
                    });
     stats.rays = finder.stats().rays;
     if (edges.tones) repair(edges, repairs, lines, toned);
+    std::vector<bool> changed(found.size());
     // Last first, so that the places of the others stay what they are.
     for (auto k = repairs.crumbs.rbegin(); k != repairs.crumbs.rend(); ++k) {
         const auto [tile, index] = places[*k];
-        found[tile].erase(found[tile].begin() + index);
+        found[tile].segments.erase(found[tile].segments.begin() + index);
+        changed[tile] = true;
     }
     for (const Segment& bridge : repairs.bridges) {
-        found[edges.search_tile_at((bridge.a + bridge.b) * 0.5F)].push_back({bridge, {}, {}});
+        const std::size_t tile = edges.search_tile_at((bridge.a + bridge.b) * 0.5F);
+        found[tile].segments.push_back(bridge);
+        changed[tile] = true;
+    }
+    for (std::size_t tile = 0; tile < found.size(); ++tile) {
+        if (changed[tile]) make_strokes(edges, found[tile]);
     }
     return stats;
 }

@@ -23,6 +23,7 @@ namespace ink {
 struct LineOutput {
     bool ink = true;             ///< drawn on the film
     Drawing* drawing = nullptr;  ///< null: not kept
+    bool segments = false;       ///< kept in full with the lines found, whoever needs them
 };
 
 /// What every method works with.

@@ -1,5 +1,7 @@
 #include "render/render.h"
 
+#include <array>
+
 #include "base/error.h"
 #include "base/parallel.h"
 #include "render/pipeline.h"
@@ -18,10 +20,18 @@ FilmSettings film_settings(const Settings& settings, const PixelFormats& formats
             .linear = formats.linear};
 }
 
+namespace {
+
+constexpr std::array kPhases{&RenderStats::trace_ms,  &RenderStats::lines_ms,
+                             &RenderStats::shade_ms,  &RenderStats::detect_ms,
+                             &RenderStats::locate_ms, &RenderStats::connect_ms,
+                             &RenderStats::ridges_ms, &RenderStats::ink_ms,
+                             &RenderStats::blend_ms,  &RenderStats::film_ms};
+
+}  // namespace
+
 RenderStats& RenderStats::operator+=(const RenderStats& other) {
-    trace_ms += other.trace_ms;
-    lines_ms += other.lines_ms;
-    shade_ms += other.shade_ms;
+    for (const auto phase : kPhases) this->*phase += other.*phase;
     rays += other.rays;
     crossings += other.crossings;
     return *this;
@@ -29,9 +39,7 @@ RenderStats& RenderStats::operator+=(const RenderStats& other) {
 
 RenderStats RenderStats::mean_over(int thread_count) const {
     RenderStats mean = *this;
-    mean.trace_ms /= thread_count;
-    mean.lines_ms /= thread_count;
-    mean.shade_ms /= thread_count;
+    for (const auto phase : kPhases) mean.*phase /= thread_count;
     mean.threads = thread_count;
     return mean;
 }

@@ -26,8 +26,13 @@ struct RenderControl {
 struct RenderStats {
     double render_ms = 0.0;  ///< from the built scene to the finished pixels
     double trace_ms = 0.0;   ///< sample rays
-    double lines_ms = 0.0;   ///< stencil rays and edge strengths
+    double lines_ms = 0.0;   ///< stencil rays and edge strengths; finding and drawing lines
     double shade_ms = 0.0;   ///< shading, compositing, pixels
+    /// Of lines_ms, by method "edges".
+    double detect_ms = 0.0, locate_ms = 0.0, connect_ms = 0.0, ridges_ms = 0.0;
+    double ink_ms = 0.0;    ///< laying ink over each other, coverage of pixels
+    double blend_ms = 0.0;  ///< of lines_ms: mixing ink with the picture
+    double film_ms = 0.0;   ///< of shade_ms: colours to pixels
     std::uint64_t rays = 0;
     std::uint64_t crossings = 0;  ///< located by method "edges"
     int threads = 0;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <variant>
 
 namespace ink {
 
@@ -19,7 +20,13 @@ RidgeSearch::RidgeSearch(const Pipeline& pipeline, int per_pixel)
       radius_(std::clamp(
           static_cast<int>(std::lround(pipeline.settings.ridge_scale_px() * per_pixel)), 2, 64)),
       apron_((radius_ + kBlockSide - 1) / kBlockSide * kBlockSide),
-      sampler_(*pipeline.frame, pipeline.camera, per_pixel) {}
+      sampler_(*pipeline.frame, pipeline.camera, per_pixel) {
+    const auto& objects = pipeline.scene.objects();
+    for (std::uint32_t k = 0; k < objects.size(); ++k) {
+        balls_.push_back(std::holds_alternative<Spheres>(objects[k].shape) &&
+                         pipeline.ids.is_ball(k));
+    }
+}
 
 void RidgeSearch::search(const Tile& tile, std::vector<Segment>& segments) {
     trace(tile);
@@ -57,6 +64,8 @@ void RidgeSearch::keep(const Block& block, std::size_t k) {
         const int i = lane % kBlockSide;
         const int j = lane / kBlockSide;
         if (i >= block.columns || j >= block.rows || hits.object[lane] == kNoObject) continue;
+        // The view-dependent curvature of a ball grows all the way to its outline.
+        if (balls_[hits.object[lane]]) continue;
         const std::size_t n = grid_.index(block.x - grid_.x0 + i, block.y - grid_.y0 + j);
         const float t = hits.t[lane];
         grid_.id[n] = ids[lane];

@@ -277,19 +277,35 @@ void average_colors(const Stencils& stencils, const Workspace& work, ColorPacket
     scale(colors, 1.0F / static_cast<float>(work.stencil_hits.size() + 1));
 }
 
+/// Whether no stencil of a block has a line, because all its rays hit one ball: then m = 0, and
+/// case 2 does not apply. Known without tracing them.
+bool lies_on_one_ball(const Stencils& stencils, Workspace& work, std::size_t block, Vec2f offset) {
+    const HitPacket& hits = work.hits[block];
+    const std::uint32_t object = hits.object[0];
+    if (object == kNoObject || !stencils.pipeline.ids.is_ball(object)) return false;
+    for (int i = 1; i < kLanes; ++i) {
+        if (hits.object[i] != object || hits.primitive[i] != hits.primitive[0]) return false;
+    }
+    return work.sampler.covers(object, hits.primitive[0], work.blocks[block], offset,
+                               stencils.points);
+}
+
 void trace_stencils(const Stencils& stencils, Workspace& work, Vec2f offset) {
     const Timer timer(work.stats.lines_ms);
     work.strengths.assign(work.blocks.size(), {});
     if (stencils.points.empty()) return;
     for (std::size_t k = 0; k < work.blocks.size(); ++k) {
-        if (stencils.shaded) {
-            work.sampler.trace_stencils(work.blocks[k], offset, stencils.points, work.stencil_hits);
+        if (!stencils.shaded && lies_on_one_ball(stencils, work, k, offset)) {
+            work.strengths[k].fill(stencils.outlines ? stencils.strengths[0] : 0.0F);
         } else {
-            work.sampler.identify_stencils(work.blocks[k], offset, stencils.points,
-                                           work.stencil_hits);
-        }
-        if (stencils.draw_lines) {
-            measure_strength(stencils, work, k, work.strengths[k]);
+            if (stencils.shaded) {
+                work.sampler.trace_stencils(work.blocks[k], offset, stencils.points,
+                                            work.stencil_hits);
+            } else {
+                work.sampler.identify_stencils(work.blocks[k], offset, stencils.points,
+                                               work.stencil_hits);
+            }
+            if (stencils.draw_lines) measure_strength(stencils, work, k, work.strengths[k]);
         }
         if (stencils.shaded) {
             average_colors(stencils, work, work.colors[k]);

@@ -161,6 +161,10 @@ void Sampler::trace_stencils(Block block, Vec2f offset, std::span<const Vec2f> s
 void Sampler::identify_stencils(Block block, Vec2f offset, std::span<const Vec2f> stencil,
                                 std::span<HitPacket> hits) {
     place_stencils(block, offset, stencil);
+    identify(hits);
+}
+
+void Sampler::identify(std::span<HitPacket> hits) {
     packets_.clear();
     if (tracer_->needs_rays()) {
         packets_.resize(points_.size());
@@ -168,6 +172,18 @@ void Sampler::identify_stencils(Block block, Vec2f offset, std::span<const Vec2f
     }
     tracer_->identify(points_, packets_, hits.first(points_.size()));
     count_rays();
+}
+
+bool Sampler::covers(std::uint32_t object, std::uint32_t primitive, Block block, Vec2f offset,
+                     std::span<const Vec2f> stencil) {
+    const ScreenBox reach = bounds(stencil);
+    const auto first = [&](int at) { return (static_cast<float>(at) + 0.5F) * spacing_; };
+    const auto last = [&](int at) { return first(at + kBlockSide - 1); };
+    const ScreenBox own =
+        shifted({first(block.x), first(block.y), last(block.x), last(block.y)}, offset);
+    const ScreenBox box{own.left + reach.left, own.top + reach.top, own.right + reach.right,
+                        own.bottom + reach.bottom};
+    return entered(box) && tracer_->covers(object, primitive, box);
 }
 
 void Sampler::complete(std::size_t k, HitPacket& hits) {
@@ -178,11 +194,22 @@ void Sampler::complete(std::size_t k, HitPacket& hits) {
 }
 
 void Sampler::trace_points(std::span<const Vec2f> points, std::vector<HitPacket>& hits) {
+    place_points(points);
+    hits.resize(points_.size());
+    trace(hits);
+}
+
+void Sampler::identify_points(std::span<const Vec2f> points, std::vector<HitPacket>& hits) {
+    place_points(points);
+    hits.resize(points_.size());
+    identify(hits);
+}
+
+void Sampler::place_points(std::span<const Vec2f> points) {
     const ScreenBox box = bounds(points);
     sort_by_place(points, box);
     const std::size_t count = (points.size() + kLanes - 1) / kLanes;
     points_.resize(count);
-    hits.resize(count);
     for (std::size_t k = 0; k < count; ++k) {
         const std::size_t first = k * kLanes;
         for (int i = 0; i < kLanes; ++i) {
@@ -194,7 +221,6 @@ void Sampler::trace_points(std::span<const Vec2f> points, std::vector<HitPacket>
         }
     }
     if (!entered(box)) enter(box);
-    trace(hits);
 }
 
 /// Counting sort by squares of the screen, row by row; their side suits a packet of points along a

@@ -48,14 +48,19 @@ class Sampler {
     void identify_stencils(Block block, Vec2f offset, std::span<const Vec2f> stencil,
                            std::span<HitPacket> hits);
     void complete(std::size_t k, HitPacket& hits);
+    /// True only if all stencil rays of the block's samples hit that primitive.
+    bool covers(std::uint32_t object, std::uint32_t primitive, Block block, Vec2f offset,
+                std::span<const Vec2f> stencil);
 
     /// Rays through any points of the screen (pixels), sixteen a packet; the last packet is filled
     /// up with inactive ones. Points that are close together travel together: lane n, counted over
     /// all packets, is point order()[n]. Normals as in trace_blocks.
     void trace_points(std::span<const Vec2f> points, std::vector<HitPacket>& hits);
+    /// The same, of which t, object and primitive are found only.
+    void identify_points(std::span<const Vec2f> points, std::vector<HitPacket>& hits);
     std::span<const std::uint32_t> order() const { return order_; }
 
-    /// The rays of the last call, packet by packet; not after `identify_stencils`.
+    /// The rays of the last call, packet by packet; not after those that identify.
     std::span<const RayPacket> packets() const { return packets_; }
     /// The points of the last call, packet by packet.
     std::span<const PointPacket> points() const { return points_; }
@@ -65,7 +70,9 @@ class Sampler {
   private:
     void place_stencils(Block block, Vec2f offset, std::span<const Vec2f> stencil);
     BlockRaster raster_of(std::span<const Block> blocks, Vec2f offset);
+    void place_points(std::span<const Vec2f> points);
     void trace(std::span<HitPacket> hits, const BlockRaster* raster = nullptr);
+    void identify(std::span<HitPacket> hits);
     void count_rays();
     bool entered(const ScreenBox& box) const;
     void sort_by_place(std::span<const Vec2f> points, const ScreenBox& box);

@@ -111,6 +111,13 @@ bool smooth_glyph(const UnitShape& shape, const Placement& placement, Vec3f norm
 
 }  // namespace
 
+Surfaces::Surfaces(const Scene& scene, NormalSource normals) : scene_(scene), normals_(normals) {
+    for (const Object& object : scene.objects()) {
+        const auto* spheres = std::get_if<Spheres>(&object.shape);
+        spheres_.push_back(spheres == nullptr ? nullptr : &spheres->spheres);
+    }
+}
+
 void Surfaces::describe(const HitPacket& hits, int lane, Sample& sample) const {
     if (hits.object[lane] == kNoObject) return;
     sample.facet = hit_normal(hits, lane);

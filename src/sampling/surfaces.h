@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <vector>
 
 #include "accel/tracer.h"
 #include "sampling/samples.h"
@@ -12,12 +13,20 @@ namespace ink {
 class Surfaces {
   public:
     /// `normals`: which ones creases are found by, of objects that name none of their own.
-    Surfaces(const Scene& scene, NormalSource normals) : scene_(scene), normals_(normals) {}
+    Surfaces(const Scene& scene, NormalSource normals);
 
     /// Adds the sphere or the open edge that a hit lies on.
     void describe(const HitPacket& hits, int lane, Sample& sample) const;
 
     bool is_mesh(std::uint32_t object) const;
+
+    /// The sphere that was hit; of radius 0 where it was none.
+    Ball ball(std::uint32_t object, std::uint32_t primitive) const {
+        const auto* spheres = spheres_[object];
+        if (spheres == nullptr) return {};
+        const Sphere& sphere = (*spheres)[primitive];
+        return {sphere.centre, sphere.radius};
+    }
 
     /// Of the mesh that was hit, its face; 0 elsewhere.
     std::uint32_t face(const HitPacket& hits, int lane) const;
@@ -45,6 +54,7 @@ class Surfaces {
 
     const Scene& scene_;
     NormalSource normals_;
+    std::vector<const std::vector<Sphere>*> spheres_;  ///< of each object; null: other shapes
 };
 
 }  // namespace ink

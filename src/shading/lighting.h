@@ -40,6 +40,11 @@ struct SurfacePacket {
 void add_diffuse(const LightSource& light, const SurfacePacket& surface,
                  const Lanes<float>& visible, ColorLanes& scattered);
 
+/// What the sky and all lights give to surfaces that lie open to them, in one go, times the
+/// surface's colour. No light may be a disc.
+void shade_open(const LightRig& lights, const NormalPacket& normals, const ColorLanes& base,
+                ColorLanes& lit);
+
 /// The sky's light, as far as surfaces lie `open` to it.
 void add_sky(const SkyLight& sky, const SurfacePacket& surface, const Lanes<float>& open,
              ColorLanes& scattered);

@@ -78,6 +78,10 @@ Shader::Shader(const Scene& scene, const Tracer& tracer, const Camera& camera,
     for (std::size_t k = 0; k < materials.size(); ++k) {
         add_surface(scene.objects()[k], materials[k], settings.normals);
     }
+    open_ = mode_ == ShadeMode::lambert && !any_gloss_ &&
+            std::ranges::none_of(lights_.sources, [&](const LightSource& light) {
+                return light.is_disc || (light.shadows && shadows_.any());
+            });
     background_color_ = srgb_decode(settings.background);
     const Color color = background_color_;
     const float alpha = settings.transparent_background ? 0.0F : 1.0F;
@@ -177,9 +181,18 @@ void Shader::look_up_colors(const HitPacket& hits, std::uint32_t object, ColorLa
         colors.fill(surfaces_[object].color);
         return;
     }
+    // Neighbours mostly hit the same primitive.
+    std::uint32_t last_object = kNoObject;
+    std::uint32_t last_primitive = kNoObject;
+    Color color;
     for (int i = 0; i < kLanes; ++i) {
-        const bool miss = hits.object[i] == kNoObject;
-        const Color color = miss ? Color{} : surface_color(surfaces_[hits.object[i]], hits, i);
+        const std::uint32_t own = hits.object[i];
+        const bool varies = own != kNoObject && surfaces_[own].vertex_colors != nullptr;
+        if (varies || own != last_object || hits.primitive[i] != last_primitive) {
+            color = own == kNoObject ? Color{} : surface_color(surfaces_[own], hits, i);
+            last_object = own;
+            last_primitive = hits.primitive[i];
+        }
         colors.r[i] = color.r;
         colors.g[i] = color.g;
         colors.b[i] = color.b;
@@ -214,6 +227,7 @@ void Shader::look_up_gloss(const HitPacket& hits, Gloss& gloss) const {
 /// Surface colour times the light that is scattered, and what is reflected.
 void Shader::illuminate(const SurfacePacket& surface, const ColorLanes& base,
                         ColorLanes& lit) const {
+    if (open_ && ambient_ == nullptr) return shade_open(lights_, surface.normals, base, lit);
     Lanes<float> open = Lanes<float>::filled(1.0F);
     if (ambient_ != nullptr) ambient_->openness(surface, open);
     if (mode_ == ShadeMode::flat) return shade_flat(base, open, lit);

@@ -109,6 +109,7 @@ class Shader {
     ShadeMode mode_;
     float pastel_;
     LightRig lights_;
+    bool open_ = false;  ///< surfaces only scatter light, and nothing keeps it from them
     Shadows shadows_;
     const AmbientOcclusion* ambient_ = nullptr;
     DepthCue depth_cue_;

@@ -1,0 +1,193 @@
+#include "lines/ink_kernels.h"
+
+#include <algorithm>
+#include <cmath>
+
+// Everything between the two namespace macros is built once for each instruction set.
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "lines/ink_kernels.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+#ifndef INK_BLOCK_OFFSETS
+#define INK_BLOCK_OFFSETS
+namespace ink {
+
+/// Where the pixels of a block lie, from the first one on.
+struct BlockOffsets {
+    Lanes<float> x, y;
+    constexpr BlockOffsets() : x(), y() {
+        for (std::size_t i = 0; i < kLanes; ++i) {
+            x.at(i) = static_cast<float>(i % kBlockSide);
+            y.at(i) = static_cast<float>(i / kBlockSide);
+        }
+    }
+};
+inline constexpr BlockOffsets kBlockOffsets;
+
+}  // namespace ink
+#endif
+
+HWY_BEFORE_NAMESPACE();
+namespace ink::HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+using Floats = hn::CappedTag<float, kLanes>;
+using Number = hn::Vec<Floats>;
+constexpr Floats kFloats;
+constexpr int kStep = static_cast<int>(hn::MaxLanes(Floats()));
+
+HWY_INLINE Number set(float value) { return hn::Set(kFloats, value); }
+HWY_INLINE Number load(const Lanes<float>& lanes, int first) {
+    return hn::Load(kFloats, lanes.data() + first);
+}
+
+/// SquareCoverage (lines/coverage.h) in lanes.
+class SquareCoverageLanes {
+  public:
+    HWY_INLINE explicit SquareCoverageLanes(Vec2f normal) {
+        const float wide = std::max(std::abs(normal.x), std::abs(normal.y));
+        const float narrow = std::min(std::abs(normal.x), std::abs(normal.y));
+        reach_ = set(0.5F * (wide + narrow));
+        flat_ = set(0.5F * (wide - narrow));
+        slope_ = set(1.0F / wide);
+        corner_ = set(1.0F / (2.0F * std::max(wide * narrow, 1e-6F)));
+    }
+    HWY_INLINE Number operator()(Number inside) const {
+        const Number off = hn::Min(hn::Abs(inside), reach_);
+        const Number rest = hn::Sub(reach_, off);
+        const Number flat = hn::Sub(set(0.5F), hn::Mul(off, slope_));
+        const Number corner = hn::Mul(hn::Mul(rest, rest), corner_);
+        const Number outer = hn::IfThenElse(hn::Le(off, flat_), flat, corner);
+        const auto is_inside = hn::Ge(inside, hn::Zero(kFloats));
+        return hn::IfThenElse(is_inside, hn::Sub(set(1.0F), outer), outer);
+    }
+
+  private:
+    Number reach_, flat_, slope_, corner_;
+};
+
+/// Calls `draw(k, x, y)` for those blocks of a range that a band may ink, and marks them; (x, y) is
+/// the centre of the block's first pixel.
+template <class Draw>
+HWY_INLINE void for_each_block(const Band& band, const BlockRange& range, const InkPlanes& planes,
+                               const Draw& draw) {
+    constexpr float kHalfBlock = 0.5F * (kBlockSide - 1);
+    const Vec2f along = band.along;
+    // How far a block's pixels reach from its middle, along the band and across it.
+    const float extent = 0.5F * kBlockSide * (std::abs(along.x) + std::abs(along.y));
+    const float most = band.half + extent;
+    for (int row = range.top; row <= range.bottom; ++row) {
+        const float y = planes.y0 + static_cast<float>(row * kBlockSide);
+        const float ry = y + kHalfBlock - band.a.y;
+        for (int column = range.left; column <= range.right; ++column) {
+            const float x = planes.x0 + static_cast<float>(column * kBlockSide);
+            const float rx = x + kHalfBlock - band.a.x;
+            const float s = rx * along.x + ry * along.y;
+            if (std::abs(ry * along.x - rx * along.y) > most || s < -most ||
+                s > band.length + most) {
+                continue;
+            }
+            const std::size_t k =
+                static_cast<std::size_t>(row) * planes.across + static_cast<std::size_t>(column);
+            std::uint8_t& touched = planes.touched[k];
+            if (touched == kFull) continue;
+            touched = kTouched;
+            draw(k, x, y);
+        }
+    }
+}
+
+/// A band that is `kWide` reaches beyond every pixel that its far edge could cut.
+template <bool kWide>
+HWY_INLINE void draw_blocks(const Band& band, const BlockRange& range, const InkPlanes& planes) {
+    const SquareCoverageLanes coverage({band.along.y, band.along.x});
+    const Number ax = set(band.a.x);
+    const Number ay = set(band.a.y);
+    const Number along_x = set(band.along.x);
+    const Number along_y = set(band.along.y);
+    const Number length = set(band.length);
+    const Number half = set(band.half);
+    const Number strength = set(band.strength);
+    const Number zero = hn::Zero(kFloats);
+    for_each_block(band, range, planes, [&](std::size_t k, float x, float y) HWY_ATTR {
+        bool full = planes.t == nullptr;
+        for (int i = 0; i < kLanes; i += kStep) {
+            const Number rx = hn::Sub(hn::Add(set(x), load(kBlockOffsets.x, i)), ax);
+            const Number ry = hn::Sub(hn::Add(set(y), load(kBlockOffsets.y, i)), ay);
+            const Number s = hn::Add(hn::Mul(rx, along_x), hn::Mul(ry, along_y));
+            const Number across = hn::Sub(hn::Mul(ry, along_x), hn::Mul(rx, along_y));
+            const Number beyond = hn::Max(hn::Max(hn::Neg(s), hn::Sub(s, length)), zero);
+            const Number distance =
+                hn::Sqrt(hn::Add(hn::Mul(across, across), hn::Mul(beyond, beyond)));
+            Number area = coverage(hn::Sub(half, distance));
+            if constexpr (!kWide) {
+                area = hn::Sub(area, coverage(hn::Sub(hn::Neg(half), distance)));
+            }
+            const Number ink = hn::Mul(area, strength);
+            float* most = planes.coverage[k].data() + i;
+            const Number covered = hn::Max(hn::Load(kFloats, most), ink);
+            hn::Store(covered, kFloats, most);
+            if (planes.t == nullptr) {
+                full = full && hn::AllTrue(kFloats, hn::Ge(covered, set(1.0F)));
+                continue;
+            }
+            float* nearest = planes.t[k].data() + i;
+            const Number t = hn::IfThenElse(hn::Gt(ink, zero), set(band.t), set(kInfinity));
+            hn::Store(hn::Min(hn::Load(kFloats, nearest), t), kFloats, nearest);
+        }
+        if (full) planes.touched[k] = kFull;
+    });
+}
+
+void draw_band(const Band& band, const BlockRange& range, const InkPlanes& planes) {
+    constexpr float kWideHalf = 0.7072F;
+    if (band.half >= kWideHalf) {
+        draw_blocks<true>(band, range, planes);
+    } else {
+        draw_blocks<false>(band, range, planes);
+    }
+}
+
+void draw_soft_band(const Band& band, const BlockRange& range, const InkPlanes& planes,
+                    std::span<const float> profile) {
+    const auto entries = static_cast<float>(profile.size());
+    for_each_block(band, range, planes, [&](std::size_t k, float x, float y) HWY_ATTR {
+        for (int i = 0; i < kLanes; ++i) {
+            const float rx = (x + kBlockOffsets.x[i]) - band.a.x;
+            const float ry = (y + kBlockOffsets.y[i]) - band.a.y;
+            const float s = rx * band.along.x + ry * band.along.y;
+            const float across = ry * band.along.x - rx * band.along.y;
+            const float beyond = std::max(std::max(-s, s - band.length), 0.0F);
+            const float u = std::sqrt(across * across + beyond * beyond) / band.half;
+            if (u >= 1.0F) continue;
+            const float ink = profile[static_cast<std::size_t>(u * entries)] * band.strength;
+            planes.coverage[k][i] = std::max(planes.coverage[k][i], ink);
+            if (planes.t != nullptr) planes.t[k][i] = std::min(planes.t[k][i], band.t);
+        }
+    });
+}
+
+}  // namespace ink::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+
+namespace ink {
+
+HWY_EXPORT(draw_band);
+HWY_EXPORT(draw_soft_band);
+
+void draw_solid(const Band& band, const BlockRange& range, const InkPlanes& planes) {
+    HWY_DYNAMIC_DISPATCH(draw_band)(band, range, planes);
+}
+
+void draw_soft(const Band& band, const BlockRange& range, const InkPlanes& planes,
+               std::span<const float> profile) {
+    HWY_DYNAMIC_DISPATCH(draw_soft_band)(band, range, planes, profile);
+}
+
+}  // namespace ink
+
+#endif

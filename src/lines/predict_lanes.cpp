@@ -1,0 +1,243 @@
+#include "lines/predict_lanes.h"
+
+#include <array>
+#include <cmath>
+
+// Everything between the two namespace macros is built once for each instruction set.
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "lines/predict_lanes.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+// The arithmetic of predict.cpp without branches: every lane computes what any may need, and picks.
+
+HWY_BEFORE_NAMESPACE();
+namespace ink::HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+using Doubles = hn::CappedTag<double, kLanes>;
+using Floats = hn::Rebind<float, Doubles>;
+using Integers = hn::Rebind<std::int32_t, Doubles>;
+using Number = hn::Vec<Doubles>;
+using Mask = hn::Mask<Doubles>;
+constexpr Doubles kDoubles;
+constexpr Floats kFloats;
+constexpr Integers kIntegers;
+constexpr int kStep = static_cast<int>(hn::MaxLanes(Doubles()));
+
+HWY_INLINE Number set(double value) { return hn::Set(kDoubles, value); }
+HWY_INLINE Number load(const Lanes<float>& lanes, int first) {
+    return hn::PromoteTo(kDoubles, hn::LoadU(kFloats, lanes.data() + first));
+}
+HWY_INLINE void store(Number value, int first, Lanes<float>& lanes) {
+    hn::StoreU(hn::DemoteTo(kFloats, value), kFloats, lanes.data() + first);
+}
+HWY_INLINE Number pick(Mask mask, Number yes, Number no) { return hn::IfThenElse(mask, yes, no); }
+
+struct Vector {
+    Number x, y, z;
+};
+HWY_INLINE Vector operator+(const Vector& a, const Vector& b) {
+    return {hn::Add(a.x, b.x), hn::Add(a.y, b.y), hn::Add(a.z, b.z)};
+}
+HWY_INLINE Vector operator-(const Vector& a, const Vector& b) {
+    return {hn::Sub(a.x, b.x), hn::Sub(a.y, b.y), hn::Sub(a.z, b.z)};
+}
+HWY_INLINE Vector operator*(const Vector& a, Number s) {
+    return {hn::Mul(a.x, s), hn::Mul(a.y, s), hn::Mul(a.z, s)};
+}
+HWY_INLINE Number dot(const Vector& a, const Vector& b) {
+    return hn::Add(hn::Add(hn::Mul(a.x, b.x), hn::Mul(a.y, b.y)), hn::Mul(a.z, b.z));
+}
+HWY_INLINE Vector cross(const Vector& a, const Vector& b) {
+    return {hn::Sub(hn::Mul(a.y, b.z), hn::Mul(a.z, b.y)),
+            hn::Sub(hn::Mul(a.z, b.x), hn::Mul(a.x, b.z)),
+            hn::Sub(hn::Mul(a.x, b.y), hn::Mul(a.y, b.x))};
+}
+HWY_INLINE Number length(const Vector& a) { return hn::Sqrt(dot(a, a)); }
+
+HWY_INLINE Vector field_at(const Viewpoint::Affine& field, Number x, Number y) {
+    const auto constant = [](Vec3d v) { return Vector{set(v.x), set(v.y), set(v.z)}; };
+    return constant(field.at_zero) + constant(field.dx) * x + constant(field.dy) * y;
+}
+
+struct Ray {
+    Vector origin, direction;
+};
+HWY_INLINE Ray ray_at(const Ray& first, const Ray& step, Number s) {
+    return {first.origin + step.origin * s, first.direction + step.direction * s};
+}
+
+struct Ball {
+    Vector centre;
+    Number radius;
+};
+HWY_INLINE Ball load(const BallLanes& lanes, int first) {
+    return {{load(lanes.x, first), load(lanes.y, first), load(lanes.z, first)},
+            load(lanes.radius, first)};
+}
+
+struct Passage {
+    Number nearest, inside;
+};
+HWY_INLINE Passage pass(const Ball& ball, const Ray& ray) {
+    const Vector to_centre = ball.centre - ray.origin;
+    const Vector across = cross(to_centre, ray.direction);
+    const Number squared = hn::Mul(ball.radius, ball.radius);
+    return {dot(to_centre, ray.direction),
+            hn::Sub(hn::Mul(squared, dot(ray.direction, ray.direction)), dot(across, across))};
+}
+HWY_INLINE Number entry(const Passage& passage) {
+    return hn::Sub(passage.nearest, hn::Sqrt(hn::Max(passage.inside, set(0.0))));
+}
+HWY_INLINE Number entry_t(const Ball& ball, const Ray& ray) {
+    return hn::Div(entry(pass(ball, ray)), length(ray.direction));
+}
+
+struct Roots {
+    Number first, second;
+};
+/// Where a parabola with these values at 0, 1/2 and 1 is zero; NaN where it is not.
+HWY_INLINE Roots parabola_roots(Number at_0, Number middle, Number at_1) {
+    const Number b = hn::Sub(hn::Sub(hn::Mul(set(4.0), middle), hn::Mul(set(3.0), at_0)), at_1);
+    const Number a = hn::Sub(hn::Sub(at_1, at_0), b);
+    const Number root = hn::Sqrt(hn::Sub(hn::Mul(b, b), hn::Mul(hn::Mul(set(4.0), a), at_0)));
+    const Number q = hn::Mul(set(-0.5), hn::Add(b, hn::CopySign(root, b)));
+    const Number zero = set(0.0);
+    const Number first = pick(hn::Ne(q, zero), hn::Div(at_0, q), zero);
+    return {first, pick(hn::Ne(a, zero), hn::Div(q, a), first)};
+}
+/// The root in the middle of a lattice edge.
+HWY_INLINE Number limb(Number at_0, Number middle, Number at_1) {
+    const Roots roots = parabola_roots(at_0, middle, at_1);
+    const Number half = set(0.5);
+    const Mask second =
+        hn::Gt(hn::Abs(hn::Sub(roots.first, half)), hn::Abs(hn::Sub(roots.second, half)));
+    return hn::Min(hn::Max(pick(second, roots.second, roots.first), set(0.0)), set(1.0));
+}
+
+/// Zero where a ray meets the plane normal . (x - centre) = height on the ball.
+HWY_INLINE Number off_ball(const Ray& ray, const Ball& ball, const Vector& normal, Number height) {
+    const Vector from_centre = ray.origin - ball.centre;
+    const Number fall = dot(normal, ray.direction);
+    const Vector at_plane =
+        from_centre * fall + ray.direction * hn::Sub(height, dot(normal, from_centre));
+    const Number rim = hn::Mul(ball.radius, fall);
+    return hn::Sub(dot(at_plane, at_plane), hn::Mul(rim, rim));
+}
+
+HWY_INLINE Number number(Prediction::Kind kind) { return set(static_cast<double>(kind)); }
+
+HWY_INLINE void predict(const Viewpoint& viewpoint, const EdgeLanes& edges, int i,
+                        PredictionLanes& predictions) {
+    const Number zero = set(0.0);
+    const Number one = set(1.0);
+    const Number half = set(0.5);
+    const auto ray = [&](Number x, Number y) {
+        return Ray{field_at(viewpoint.origin, x, y), field_at(viewpoint.direction, x, y)};
+    };
+    const Ray ray_0 = ray(load(edges.ax, i), load(edges.ay, i));
+    const Ray ray_1 = ray(load(edges.bx, i), load(edges.by, i));
+    const Ray step{ray_1.origin - ray_0.origin, ray_1.direction - ray_0.direction};
+    const Ray middle = ray_at(ray_0, step, half);
+    const Number length_0 = length(ray_0.direction);
+    const Number length_1 = length(ray_1.direction);
+    const Ball a = load(edges.first, i);
+    const Ball b = load(edges.second, i);
+    const Mask first = hn::Gt(a.radius, zero);
+    const Mask second = hn::Gt(b.radius, zero);
+    const Passage a_0 = pass(a, ray_0);
+    const Passage a_1 = pass(a, ray_1);
+    const Passage b_0 = pass(b, ray_0);
+    const Passage b_1 = pass(b, ray_1);
+    // Whether it is a ball's outer side that was seen.
+    const auto shows = [&](const Passage& passage, Number t, const Ball& ball, Number length) {
+        constexpr double kRounding = 1e-3;  // of the radius
+        const Number slack = hn::Mul(hn::Mul(set(kRounding), ball.radius), length);
+        return hn::And(hn::Gt(passage.inside, zero),
+                       hn::Lt(hn::Mul(t, length), hn::Add(passage.nearest, slack)));
+    };
+    const Mask first_shows = shows(a_0, load(edges.first.t, i), a, length_0);
+    const Mask second_shows = shows(b_1, load(edges.second.t, i), b, length_1);
+    const Mask a_ends = hn::And(first, hn::Le(a_1.inside, zero));
+    const Mask b_begins = hn::And(second, hn::Le(b_0.inside, zero));
+    const Number end = pick(a_ends, limb(a_0.inside, pass(a, middle).inside, a_1.inside), one);
+    const Number begin = pick(b_begins, limb(b_0.inside, pass(b, middle).inside, b_1.inside), zero);
+    const Number a_t = hn::Div(a_0.nearest, length_0);
+    const Number b_t = hn::Div(b_0.nearest, length_0);
+    const Number b_t_1 = hn::Div(b_1.nearest, length_1);
+    const Number a_end_t = hn::Add(a_t, hn::Mul(end, hn::Sub(hn::Div(a_1.nearest, length_1), a_t)));
+    const Number b_begin_t = hn::Add(b_t, hn::Mul(begin, hn::Sub(b_t_1, b_t)));
+
+    // Negative while the first is in front.
+    const Number before = pick(b_begins, hn::Sub(entry_t(a, ray_at(ray_0, step, begin)), b_begin_t),
+                               hn::Sub(entry(a_0), entry(b_0)));
+    const Number after = pick(a_ends, hn::Sub(a_end_t, entry_t(b, ray_at(ray_0, step, end))),
+                              hn::Sub(entry(a_1), entry(b_1)));
+
+    const Vector normal = b.centre - a.centre;
+    const Number height =
+        hn::Mul(half, hn::Sub(hn::Add(dot(normal, normal), hn::Mul(a.radius, a.radius)),
+                              hn::Mul(b.radius, b.radius)));
+    const Number span = hn::Sub(end, begin);
+    const auto off_seam = [&](Number way) {
+        return off_ball(ray_at(ray_0, step, hn::Add(begin, hn::Mul(way, span))), a, normal, height);
+    };
+    const Roots roots = parabola_roots(off_seam(zero), off_seam(half), off_seam(one));
+    const auto within = [&](Number root) { return hn::And(hn::Ge(root, zero), hn::Le(root, one)); };
+    const Mask first_within = within(roots.first);
+    const Number seam_at =
+        hn::Add(begin, hn::Mul(span, pick(first_within, roots.first, roots.second)));
+
+    const Mask both = hn::And(first, second);
+    const Mask ends_first = hn::And(a_ends, hn::Or(hn::Not(second), hn::Le(after, zero)));
+    const Mask begins_second = hn::And(b_begins, hn::Or(hn::Not(first), hn::Ge(before, zero)));
+    const Number none = set(PredictionLanes::kNone);
+    Number kind = pick(hn::Xor(first_within, within(roots.second)), number(Prediction::Kind::seam),
+                       set(PredictionLanes::kSearch));
+    kind = pick(hn::Or(hn::Ge(before, zero), hn::Le(after, zero)), none, kind);
+    kind = pick(both, kind, none);
+    kind = pick(ends_first, number(Prediction::Kind::first_limb), kind);
+    kind = pick(begins_second, number(Prediction::Kind::second_limb), kind);
+    const Mask gap = hn::And(both, hn::Lt(end, begin));
+    kind = pick(gap, number(Prediction::Kind::gap), kind);
+    kind =
+        pick(hn::Or(hn::AndNot(first_shows, first), hn::AndNot(second_shows, second)), none, kind);
+
+    Number at = pick(ends_first, end, seam_at);
+    at = pick(begins_second, begin, at);
+    at = pick(gap, hn::Mul(half, hn::Add(end, begin)), at);
+    Number t = pick(ends_first, a_end_t, entry_t(a, ray_at(ray_0, step, at)));
+    t = pick(begins_second, b_begin_t, t);
+    t = pick(gap, hn::Min(a_t, b_t_1), t);
+    const Number smaller = pick(both, hn::Min(a.radius, b.radius), hn::Max(a.radius, b.radius));
+    const Vector across = step.origin + step.direction * hn::Div(t, length_0);
+    store(at, i, predictions.at);
+    store(t, i, predictions.t);
+    store(hn::Div(hn::Mul(smaller, smaller), dot(across, across)), i, predictions.squared_radius);
+    hn::StoreU(hn::DemoteTo(kIntegers, kind), kIntegers, predictions.kind.data() + i);
+}
+
+void predict_edges(const Viewpoint& viewpoint, const EdgeLanes& edges,
+                   PredictionLanes& predictions) {
+    for (int i = 0; i < kLanes; i += kStep) predict(viewpoint, edges, i, predictions);
+}
+
+}  // namespace ink::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+
+namespace ink {
+
+HWY_EXPORT(predict_edges);
+
+void predict_crossings(const Viewpoint& viewpoint, const EdgeLanes& edges,
+                       PredictionLanes& predictions) {
+    HWY_DYNAMIC_DISPATCH(predict_edges)(viewpoint, edges, predictions);
+}
+
+}  // namespace ink
+
+#endif

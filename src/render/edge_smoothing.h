@@ -1,0 +1,77 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "base/image.h"
+#include "base/lanes.h"
+#include "film/film.h"
+#include "lines/segment.h"
+#include "render/tiles.h"
+
+namespace ink {
+
+/// Linear, premultiplied R, G, B, A.
+using PixelColor = std::array<float, 4>;
+/// What smoothing adds to one. In fixed point, for a sum that does not depend on the order of
+/// segments, and so not on the tiles.
+using ColorShift = std::array<std::int32_t, 4>;
+
+/// The pixels along the border of a tile, to which lines of several tiles may add. What lies in the
+/// first row, then in the first column below it.
+struct Fringe {
+    std::vector<PixelColor> colors;  ///< empty: all background
+    std::vector<ColorShift> own;     ///< from the tile's own lines; empty: none
+    std::vector<ColorShift> right;   ///< for the column after the last; empty: none
+    std::vector<ColorShift> below;   ///< for the row after the last and its corner on the right
+};
+
+/// Smooths the shading along lines: of a pixel that a line cuts, the part on the other side takes
+/// the other side's colour. A lattice point stands for a square of the lattice's spacing; of each
+/// quarter of the four squares about a cell that a segment crosses, the area beyond the segment
+/// counts.
+class EdgeSmoothing {
+  public:
+    /// For `lattice` points along a pixel's side.
+    explicit EdgeSmoothing(int lattice) : q_(lattice) {}
+
+    /// Clears what there is and moves to the segments in the cells of a tile.
+    void begin(const Tile& tile);
+    /// `left` and `right` are the colours of the segment's two sides.
+    void add(const Segment& segment, const PixelColor& left, const PixelColor& right);
+
+    /// Adds what there is to the block with pixel (x, y), which lies in the tile; its pixels on the
+    /// tile's fringe are left as they are.
+    void apply(int x, int y, ColorPacket& colors) const;
+    bool changes(int x, int y) const { return any_ && touched_[block(x, y)] != 0; }
+
+    /// Moves what there is for the fringe, and beyond it. The colours of its pixels are the
+    /// caller's.
+    void take_fringe(Fringe& fringe) const;
+
+  private:
+    std::size_t block(int x, int y) const {
+        const auto column = static_cast<std::size_t>(x - tile_.x0) / kBlockSide;
+        const auto row = static_cast<std::size_t>(y - tile_.y0) / kBlockSide;
+        return row * across_ + column;
+    }
+    ColorShift shift_at(int x, int y) const;
+    ColorShift& shift_of(int x, int y);
+
+    int q_;
+    Tile tile_{};
+    std::size_t across_ = 0;  ///< blocks, one more than the tile's
+    bool any_ = false;
+    using ShiftBlock = std::array<ColorShift, kLanes>;
+    std::vector<ShiftBlock> shifts_;
+    std::vector<std::uint8_t> touched_;
+};
+
+/// Finishes the fringe of tile `index` of a raster of tiles, `across` in a row, once all tiles are
+/// done: puts the pixels that any line changes on the film again.
+void finish_fringe(std::span<const Tile> tiles, const std::vector<const Fringe*>& fringes,
+                   std::size_t across, std::size_t index, const PixelColor& background, Film& film);
+
+}  // namespace ink
