@@ -428,6 +428,13 @@ bool Locator::is_speck(const Interval& interval, const Sample& beyond) const {
            depth_jump(before, beyond) <= 0.5F * depth_jump(before, speck) + 1e-6F;
 }
 
+/// Whether two geometries meet at a crossing: what lies between two corners of one of them, however
+/// narrow, is no slit.
+bool Locator::touch(const Interval& interval) const {
+    return interval.suspicion == Suspicion::id && interval.at_a.id != kBackground &&
+           interval.at_b.id != kBackground && planes_meet(interval);
+}
+
 /// One more sample behind each crossing tells whether the surface in front goes on there. Where
 /// depths are alike, either side may be the slit.
 void Locator::drop_slits(float spacing, const SampleFunction& sample) {
@@ -443,7 +450,7 @@ void Locator::drop_slits(float spacing, const SampleFunction& sample) {
     };
     for (std::size_t k = 0; k < intervals_.size(); ++k) {
         const Interval& interval = intervals_[k];
-        if (interval.state != State::located) continue;
+        if (interval.state != State::located || touch(interval)) continue;
         const bool second_behind = lies_in_front(interval.at_a, interval.at_b);
         look_beyond(k, second_behind);
         if (interval.suspicion != Suspicion::id && !leaps(interval)) look_beyond(k, !second_behind);

@@ -136,6 +136,7 @@ class Locator {
     void split(std::size_t k, Vec2f point, const Sample& sample);
     void drop_specks(const SampleFunction& sample);
     bool is_speck(const Interval& interval, const Sample& beyond) const;
+    bool touch(const Interval& interval) const;
     void drop_slits(float spacing, const SampleFunction& sample);
     bool is_slit(const Sample& before, const Sample& within, const Sample& beyond) const;
     void refine_steep(const SampleFunction& sample);
