@@ -238,10 +238,42 @@ TEST(Assemblies, CopyTheirChainsByTheirMotions) {
         ASSERT_EQ(p.size(), 2U);
         EXPECT_NEAR(length(p[0] - Vec3d{1, 2, 3}), 0.0, 1e-6);
         EXPECT_NEAR(length(p[1] - Vec3d{8, 1, 3}), 0.0, 1e-6);
-        EXPECT_EQ(contents.objects[0].part_names,
-                  (std::vector<std::string>{"A", "B", "A-2", "B-2"}));
-        EXPECT_EQ(spheres(contents).parts, (std::vector<std::uint32_t>{0, 2}));
+        const Object& object = contents.objects[0];
+        EXPECT_EQ(spheres(contents).spheres.size(), 1U) << "stored once";
+        EXPECT_EQ(object.part_name(part_of(object.shape, 0)), "A");
+        EXPECT_EQ(object.part_name(part_of(object.shape, 1)), "A-2");
     }
+}
+
+TEST(Assemblies, AsCopiesAreTheAtomsThatTheyStandFor) {
+    const auto file = data_file("molecules/1rb8_capsid_asu.pdb.gz");
+    if (!std::filesystem::exists(file)) GTEST_SKIP() << "no real files here";
+    for (const std::string level : {"", "residue", "entity", "element"}) {
+        DataSettings settings{.assembly = "1", .parts = level};
+        const FileContents copies = read_file(file, {.data = settings});
+        settings.clip.upper.x = 1e9;  // cuts nothing off, but takes atoms one by one
+        const FileContents atoms = read_file(file, {.data = settings});
+        ASSERT_EQ(spheres(copies).count(), spheres(atoms).spheres.size());
+        ASSERT_EQ(spheres(copies).spheres.size() * 60, spheres(atoms).spheres.size());
+        const auto p = positions(copies);
+        const auto q = positions(atoms);
+        for (std::size_t i = 0; i < p.size(); i += 97) {
+            EXPECT_LT(length(p[i] - q[i]), 1e-4);
+            const Object& a = copies.objects[0];
+            const Object& b = atoms.objects[0];
+            EXPECT_EQ(a.part_name(part_of(a.shape, i)), b.part_name(part_of(b.shape, i)));
+        }
+    }
+}
+
+TEST(Assemblies, OfMotionsThatStretchAreNotCopies) {
+    const TemporaryFolder folder;
+    std::string text(kCifAssembly);
+    text.replace(text.find("2 0 -1 0 10"), 11, "2 0 -2 0 10");
+    const FileContents contents =
+        read_file(folder.write("a.cif", text), {.data = {.assembly = "1"}});
+    EXPECT_TRUE(spheres(contents).copies.empty());
+    EXPECT_NEAR(length(positions(contents).at(1) - Vec3d{6, 1, 3}), 0.0, 1e-6);
 }
 
 TEST(Assemblies, MultiplyGroupsOfOperators) {
@@ -276,7 +308,7 @@ TEST(RealMolecules, BuildTheCapsidOfSixtyUnits) {
     const auto file = data_file("molecules/1rb8_capsid_asu.pdb.gz");
     if (!std::filesystem::exists(file)) GTEST_SKIP() << "no real files here";
     const FileContents contents = read_file(file, {.data = {.assembly = "1"}});
-    EXPECT_EQ(spheres(contents).spheres.size(), 306'720U);
+    EXPECT_EQ(spheres(contents).count(), 306'720U);
     // An icosahedral shell about the origin: as long in every direction.
     const Bounds3d box = contents.objects[0].world_bounds();
     EXPECT_NEAR(box.lower.x, -box.upper.x, 0.01 * box.upper.x);

@@ -19,8 +19,9 @@ inline const Spheres& spheres(const FileContents& contents) {
 
 inline std::vector<Vec3d> positions(const FileContents& contents) {
     std::vector<Vec3d> out;
-    for (const Sphere& sphere : spheres(contents).spheres) {
-        out.push_back(contents.objects[0].frame.to_world(sphere.centre));
+    const Spheres& shape = spheres(contents);
+    for (std::size_t i = 0; i < shape.count(); ++i) {
+        out.push_back(contents.objects[0].frame.to_world(shape.at(i).centre));
     }
     return out;
 }

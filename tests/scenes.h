@@ -71,6 +71,17 @@ inline std::vector<Object> random_objects(unsigned seed, int spheres, int triang
     return {sphere_object(std::move(balls)), mesh_object(std::move(vertices), std::move(indices))};
 }
 
+/// The same with the spheres there four times: as they are, turned and moved.
+inline std::vector<Object> random_copies(unsigned seed, int spheres, int triangles) {
+    std::vector<Object> objects = random_objects(seed, spheres, triangles);
+    auto& shape = std::get<Spheres>(objects[0].shape);
+    shape.copies = {{.rotation = {1, 0, 0, 0, 1, 0, 0, 0, 1}, .shift = {}},
+                    {.rotation = {0, -1, 0, 1, 0, 0, 0, 0, 1}, .shift = {0.5, 0.25, -0.5}},
+                    {.rotation = {0.8, 0, 0.6, 0, 1, 0, -0.6, 0, 0.8}, .shift = {0.25, -0.5, 0.75}},
+                    {.rotation = {-1, 0, 0, 0, -1, 0, 0, 0, 1}, .shift = {1.5, 1, 0.25}}};
+    return objects;
+}
+
 /// The objects moved and scaled in the world: p -> p * scale + shift.
 inline std::vector<Object> placed(std::vector<Object> objects, double scale, Vec3d shift) {
     for (Object& object : objects) {

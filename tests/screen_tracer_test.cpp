@@ -200,6 +200,26 @@ TEST(ScreenTracer, HitsWhatBruteForceHitsInPerspective) {
     }
 }
 
+TEST(ScreenTracer, HitsCopiesWhereBruteForceHitsThem) {
+    const Seen seen(random_copies(7, 50, 100), {}, kSmall);
+    expect_same_hits(seen, seen.pixels());
+    expect_same_hits(seen, seen.random_points(3, 200));
+}
+
+TEST(Clusters, OfCopiesShareAllButTheirBounds) {
+    std::vector<Object> once = random_objects(7, 1000, 0);
+    std::vector<Object> copied = random_copies(7, 1000, 0);
+    once.pop_back();
+    copied.pop_back();
+    const Scene one(std::move(once));
+    const Scene four(std::move(copied));
+    const Clusters alone(one);
+    const Clusters copies(four);
+    EXPECT_EQ(copies.spheres.size(), alone.spheres.size());
+    EXPECT_EQ(copies.order.size(), alone.order.size());
+    EXPECT_EQ(copies.clusters.size(), 4 * alone.clusters.size());
+}
+
 TEST(ScreenTracer, HitsWhatBruteForceHitsInParallel) {
     ViewSettings view;
     view.orthographic = 0.0;

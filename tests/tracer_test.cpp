@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <string>
@@ -84,6 +85,42 @@ TEST_P(EveryTracerPath, HitsWhatBruteForceHits) {
     EXPECT_LE(result.different, 3) << "of " << result.rays;
     EXPECT_LT(result.t_error, 2e-5F);
     EXPECT_LT(result.normal_error, 2e-2F);  // at a limb the normal turns by sqrt(2 eps)
+}
+
+TEST_P(EveryTracerPath, HitsCopiesWhereBruteForceHitsThem) {
+    const Scene scene(random_copies(7, 100, 200));
+    const auto rays = random_rays(11, 400);
+    const auto embree = make_embree_tracer(scene, GetParam());
+    const auto oracle = make_brute_force_tracer(scene);
+    const Agreement result = compare(trace(*oracle, rays), trace(*embree, rays));
+    EXPECT_GT(result.hits, result.rays / 4);
+    EXPECT_LE(result.different, 4) << "of " << result.rays;
+    EXPECT_LT(result.t_error, 2e-5F);
+    EXPECT_LT(result.normal_error, 2e-2F);
+}
+
+TEST(Tracer, CrossesCopiesAsTheSpheresThatTheyStandFor) {
+    const Scene scene(random_copies(7, 60, 0));
+    const auto embree = make_embree_tracer(scene);
+    const auto oracle = make_brute_force_tracer(scene);
+    std::size_t crossings = 0;
+    for (const RayPacket& rays : random_rays(5, 20)) {
+        SurfaceHits hits;
+        SurfaceHits expected;
+        embree->cross(rays, hits);
+        oracle->cross(rays, expected);
+        for (std::size_t i = 0; i < kLanes; ++i) {
+            std::vector<std::uint32_t> primitives;
+            std::vector<std::uint32_t> wanted;
+            for (const SurfaceHit& hit : hits[i]) primitives.push_back(hit.primitive);
+            for (const SurfaceHit& hit : expected[i]) wanted.push_back(hit.primitive);
+            std::ranges::sort(primitives);
+            std::ranges::sort(wanted);
+            EXPECT_EQ(primitives, wanted);
+            crossings += wanted.size();
+        }
+    }
+    EXPECT_GT(crossings, 1000U);
 }
 
 TEST_P(EveryTracerPath, IsBlockedWhereBruteForceIs) {

@@ -39,10 +39,11 @@ std::optional<double> intersect(const Ray& ray, const Sphere& sphere) {
 }
 
 void intersect(const Ray& ray, const Spheres& shape, std::uint32_t object, Hit& best) {
-    for (std::size_t i = 0; i < shape.spheres.size(); ++i) {
-        const auto t = intersect(ray, shape.spheres[i]);
+    for (std::size_t i = 0; i < shape.count(); ++i) {
+        const Sphere sphere = shape.at(i);
+        const auto t = intersect(ray, sphere);
         if (!t || *t >= best.t) continue;
-        const Vec3d normal = ray.origin + ray.dir * *t - to_double(shape.spheres[i].centre);
+        const Vec3d normal = ray.origin + ray.dir * *t - to_double(sphere.centre);
         best = {*t, normal, 0.0, 0.0, static_cast<std::uint32_t>(i), object};
     }
 }

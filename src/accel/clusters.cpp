@@ -53,9 +53,10 @@ struct SphereParts {
 
     std::size_t count() const { return shape.spheres.size(); }
     std::uint32_t primitive(std::uint32_t i) const { return i; }
-    Bounds3f bounds(std::size_t i) const {
+    Bounds3f bounds(std::size_t i, std::size_t copy = 0) const {
         Bounds3f bounds;
-        bounds.add(shape.spheres[i].centre, shape.spheres[i].radius);
+        const Sphere sphere = shape.at(copy * shape.spheres.size() + i);
+        bounds.add(sphere.centre, sphere.radius);
         return bounds;
     }
     void put(std::uint32_t i, int lane, SphereLanes& lanes) const {
@@ -179,9 +180,12 @@ void append(const Parts& parts, std::uint32_t object, std::vector<PartLanes>& pa
         for (std::size_t c = begin; c < end; ++c) {
             const std::size_t from = c * kLanes;
             const std::size_t to = std::min(from + kLanes, count);
-            all.clusters[first_cluster + c] = {object, static_cast<std::uint32_t>(first + from),
+            all.clusters[first_cluster + c] = {object,
+                                               static_cast<std::uint32_t>(first + from),
                                                static_cast<std::uint32_t>(first_packet + c),
-                                               static_cast<std::uint8_t>(to - from), Parts::kKind};
+                                               kNoCopy,
+                                               static_cast<std::uint8_t>(to - from),
+                                               Parts::kKind};
             for (int lane = 0; lane < kLanes; ++lane) {
                 const std::size_t i = std::min(from + static_cast<std::size_t>(lane), to - 1);
                 const std::uint32_t part = keys[i].second;
@@ -191,6 +195,37 @@ void append(const Parts& parts, std::uint32_t object, std::vector<PartLanes>& pa
             }
         }
     });
+}
+
+/// The clusters of the spheres that were appended last become those of the first copy, and the
+/// others follow.
+void append_copies(const Spheres& shape, Clusters& all, std::vector<Bounds3f>& boxes) {
+    const std::size_t a_copy = packets_for(shape.spheres.size());
+    const std::size_t first = all.clusters.size() - a_copy;
+    const std::size_t first_copy = all.copies.size();
+    for (std::size_t k = 0; k < shape.copies.size(); ++k) {
+        all.copies.push_back(
+            {shape.copies[k], static_cast<std::uint32_t>(k * shape.spheres.size())});
+    }
+    all.clusters.resize(first + a_copy * shape.copies.size());
+    boxes.resize(all.clusters.size());
+    for (std::size_t c = 0; c < a_copy; ++c) {
+        all.clusters[first + c].copy = static_cast<std::uint32_t>(first_copy);
+    }
+    const SphereParts parts{shape};
+    parallel_ranges(
+        a_copy * (shape.copies.size() - 1), kGrain / kLanes,
+        [&](std::size_t begin, std::size_t end) {
+            for (std::size_t k = begin; k < end; ++k) {
+                const std::size_t copy = 1 + k / a_copy;
+                Cluster cluster = all.clusters[first + k % a_copy];
+                cluster.copy = static_cast<std::uint32_t>(first_copy + copy);
+                all.clusters[first + a_copy + k] = cluster;
+                for (std::size_t i = 0; i < cluster.count; ++i) {
+                    boxes[first + a_copy + k].add(parts.bounds(all.order[cluster.first + i], copy));
+                }
+            }
+        });
 }
 
 }  // namespace
@@ -212,6 +247,16 @@ bool has_screen_form(const Shape& shape) {
     return false;
 }
 
+SphereLanes moved(const SphereLanes& spheres, const Motion& motion) {
+    SphereLanes out;
+    out.radius = spheres.radius;
+    for (int i = 0; i < kLanes; ++i) {
+        const Vec3f p{spheres.centre.x[i], spheres.centre.y[i], spheres.centre.z[i]};
+        put(out.centre, i, motion(p));
+    }
+    return out;
+}
+
 Clusters::Clusters(const Scene& scene) : unit_shapes(scene.objects().size()) {
     std::vector<Bounds3f> boxes;
     for (std::uint32_t i = 0; i < scene.objects().size(); ++i) {
@@ -219,6 +264,7 @@ Clusters::Clusters(const Scene& scene) : unit_shapes(scene.objects().size()) {
         if (!has_screen_form(shape)) continue;
         if (const auto* balls = std::get_if<Spheres>(&shape)) {
             append(SphereParts{*balls}, i, spheres, *this, boxes);
+            if (!balls->copies.empty()) append_copies(*balls, *this, boxes);
         } else if (const auto* mesh = std::get_if<Mesh>(&shape)) {
             append(TriangleParts{*mesh}, i, triangles, *this, boxes);
         } else if (const auto* hexahedra = std::get_if<Hexahedra>(&shape)) {

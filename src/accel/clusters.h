@@ -11,11 +11,15 @@ namespace ink {
 
 enum class ClusterKind : std::uint8_t { spheres, triangles, solids, glyphs };
 
+/// Of a cluster whose primitives are drawn where they are.
+inline constexpr std::uint32_t kNoCopy = 0xFFFFFFFFU;
+
 /// Up to kLanes primitives of one object that lie close together.
 struct Cluster {
     std::uint32_t object = 0;
-    std::uint32_t first = 0;   ///< into Clusters::order
-    std::uint32_t packet = 0;  ///< into the packets of its kind
+    std::uint32_t first = 0;       ///< into Clusters::order
+    std::uint32_t packet = 0;      ///< into the packets of its kind
+    std::uint32_t copy = kNoCopy;  ///< into Clusters::copies
     std::uint8_t count = 0;
     ClusterKind kind = ClusterKind::spheres;
 };
@@ -43,6 +47,12 @@ struct GlyphLanes {
     Points origin, x_axis, y_axis, z_axis;
 };
 
+/// Where and as which primitives a cluster is drawn whose packet and order others use too.
+struct ClusterCopy {
+    Motion motion;
+    std::uint32_t first_primitive = 0;  ///< that is numbered 0 in the first copy
+};
+
 /// Sixteen boxes, corner by corner.
 struct BoxLanes {
     Points lower, upper;
@@ -53,7 +63,7 @@ bool has_screen_form(const Shape& shape);
 
 /// The primitives of the scene's shapes with screen forms in clusters along a Morton curve, object
 /// by object, so that clusters that follow each other are near each other too, and a tree of boxes
-/// above them.
+/// above them. Copies of spheres have clusters and boxes of their own, and share all else.
 struct Clusters {
     std::vector<Cluster> clusters;
     std::vector<std::uint32_t> order;  ///< primitives, cluster by cluster
@@ -61,6 +71,7 @@ struct Clusters {
     std::vector<TriangleLanes> triangles;
     std::vector<SolidLanes> solids;
     std::vector<GlyphLanes> glyphs;
+    std::vector<ClusterCopy> copies;
     std::vector<UnitShape> unit_shapes;  ///< of objects that are glyphs; an entry an object
 
     /// Boxes of the clusters; then boxes whose lanes bound a packet of the level below each, up to
@@ -74,5 +85,8 @@ struct Clusters {
     Clusters() = default;
     explicit Clusters(const Scene& scene);
 };
+
+/// The spheres of a cluster where its copy is.
+SphereLanes moved(const SphereLanes& spheres, const Motion& motion);
 
 }  // namespace ink

@@ -8,10 +8,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstring>
 #include <string>
 #include <type_traits>
+#include <utility>
+#include <vector>
 
 #include "accel/shape_intersection.h"
 #include "accel/tracer.h"
@@ -75,39 +78,64 @@ struct NearestHits {
     }
 };
 
+/// The copies of spheres, which are Embree's instances. It tells hits on them in terms of what they
+/// are copies of.
+struct Instances {
+    struct Copy {
+        Motion motion;
+        std::uint32_t first_primitive = 0;
+    };
+    unsigned first_id = 0;
+    std::vector<Copy> copies;
+
+    std::uint32_t primitive(unsigned instance, unsigned of_original) const {
+        if (instance == RTC_INVALID_GEOMETRY_ID) return of_original;
+        return copies[instance - first_id].first_primitive + of_original;
+    }
+    Vec3f normal(unsigned instance, Vec3f of_original) const {
+        if (instance == RTC_INVALID_GEOMETRY_ID) return of_original;
+        return to_float(copies[instance - first_id].motion.turn(to_double(of_original)));
+    }
+};
+
 /// What Embree hands back to the functions that it calls on the way.
 struct Query : QueryContext {
     SurfaceHits* hits = nullptr;  ///< if every crossing is wanted; of the ray whose ID is the index
     NearestHits* nearest = nullptr;  ///< if coincident surfaces are told apart
+    const Instances* instances = nullptr;
 };
 
 /// Embree's filter: writes a crossing down and goes on as if there were none.
 void record(const RTCFilterFunctionNArguments* args) {
-    SurfaceHits& lists = *static_cast<Query*>(args->context)->hits;
+    const auto& query = *static_cast<Query*>(args->context);
+    SurfaceHits& lists = *query.hits;
     for (unsigned i = 0; i < args->N; ++i) {
         if (args->valid[i] == 0) continue;
         args->valid[i] = 0;
         const unsigned n = args->N;
+        const unsigned instance = RTCHitN_instID(args->hit, n, i, 0);
+        const Vec3f normal{RTCHitN_Ng_x(args->hit, n, i), RTCHitN_Ng_y(args->hit, n, i),
+                           RTCHitN_Ng_z(args->hit, n, i)};
         lists[RTCRayN_id(args->ray, n, i)].push_back(
-            {RTCRayN_tfar(args->ray, n, i),
-             {RTCHitN_Ng_x(args->hit, n, i), RTCHitN_Ng_y(args->hit, n, i),
-              RTCHitN_Ng_z(args->hit, n, i)},
-             RTCHitN_u(args->hit, n, i),
-             RTCHitN_v(args->hit, n, i),
-             RTCHitN_primID(args->hit, n, i),
+            {RTCRayN_tfar(args->ray, n, i), query.instances->normal(instance, normal),
+             RTCHitN_u(args->hit, n, i), RTCHitN_v(args->hit, n, i),
+             query.instances->primitive(instance, RTCHitN_primID(args->hit, n, i)),
              RTCHitN_geomID(args->hit, n, i)});
     }
 }
 
 /// Embree's filter: keeps the hit that is to be seen, and looks for others that coincide with it.
 void prefer_first(const RTCFilterFunctionNArguments* args) {
-    NearestHits& nearest = *static_cast<Query*>(args->context)->nearest;
+    const auto& query = *static_cast<Query*>(args->context);
+    NearestHits& nearest = *query.nearest;
     for (unsigned i = 0; i < args->N; ++i) {
         if (args->valid[i] == 0) continue;
         const unsigned n = args->N;
         float& t = RTCRayN_tfar(args->ray, n, i);
+        const std::uint32_t primitive = query.instances->primitive(
+            RTCHitN_instID(args->hit, n, i, 0), RTCHitN_primID(args->hit, n, i));
         if (nearest.take(RTCRayN_id(args->ray, n, i), t, RTCHitN_geomID(args->hit, n, i),
-                         RTCHitN_primID(args->hit, n, i))) {
+                         primitive)) {
             t += kTouching;
         } else {
             args->valid[i] = 0;
@@ -188,6 +216,7 @@ struct UserShape {
             RTCHitN_v(hits, width, i) = 0.0F;
             RTCHitN_primID(hits, width, i) = args->primID;
             RTCHitN_geomID(hits, width, i) = args->geomID;
+            RTCHitN_instID(hits, width, i, 0) = RTC_INVALID_GEOMETRY_ID;
         }
     }
 
@@ -288,7 +317,6 @@ void prepare_rays(Rays& rays) {
 template <class RayHit, int Width>
 void prepare(RayHit& packet) {
     prepare_rays<Width>(packet.ray);
-    for (int i = 0; i < Width; ++i) packet.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
 }
 
 /// Copies lanes [first, first + Width) of a packet into Embree's layout of that width.
@@ -313,12 +341,14 @@ void load(const RayPacket& rays, int first, RayHit& out) {
         out.ray.tfar[i] = kInfinity;
         out.ray.id[i] = static_cast<unsigned>(first + i);
         out.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
+        out.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
     }
 }
 
 /// `t`: of the hits, from lane `first`.
 template <class RayHit, int Width>
-void store(const RayHit& in, const float* t, int first, HitPacket& hits) {
+void store(const RayHit& in, const float* t, int first, const Instances& instances,
+           HitPacket& hits) {
     const auto copy = [&](auto& to, const auto* from) {
         std::memcpy(to.data() + first, from, sizeof(*from) * Width);
     };
@@ -330,6 +360,29 @@ void store(const RayHit& in, const float* t, int first, HitPacket& hits) {
     copy(hits.v, in.hit.v);
     copy(hits.primitive, in.hit.primID);
     copy(hits.object, in.hit.geomID);
+    if (instances.copies.empty()) return;
+    for (int i = 0; i < Width; ++i) {
+        const unsigned instance = in.hit.instID[0][i];
+        const Vec3f normal =
+            instances.normal(instance, {in.hit.Ng_x[i], in.hit.Ng_y[i], in.hit.Ng_z[i]});
+        hits.normal_x[first + i] = normal.x;
+        hits.normal_y[first + i] = normal.y;
+        hits.normal_z[first + i] = normal.z;
+        hits.primitive[first + i] = instances.primitive(instance, in.hit.primID[i]);
+    }
+}
+
+/// Embree's matrix: the columns of the rotation, then the shift.
+std::array<float, 12> to_columns(const Motion& motion) {
+    std::array<float, 12> columns{};
+    for (std::size_t k = 0; k < 9; ++k) {
+        columns[3 * (k % 3) + k / 3] = static_cast<float>(motion.rotation[k]);
+    }
+    const Vec3f shift = to_float(motion.shift);
+    columns[9] = shift.x;
+    columns[10] = shift.y;
+    columns[11] = shift.z;
+    return columns;
 }
 
 class EmbreeTracer final : public Tracer {
@@ -342,6 +395,7 @@ class EmbreeTracer final : public Tracer {
         // Watertight between triangles: bisection homes in on their edges, where a crack would show
         // what lies behind as a jump in depth.
         rtcSetSceneFlags(scene_.get(), RTC_SCENE_FLAG_ROBUST | kFilterWithQuery);
+        instances_.first_id = static_cast<unsigned>(scene.objects().size());
         for (std::uint32_t i = 0; i < scene.objects().size(); ++i) {
             const Object& object = scene.objects()[i];
             if (wanted && !wanted(object)) continue;
@@ -401,14 +455,39 @@ class EmbreeTracer final : public Tracer {
             [&](const auto& shape) { return make_geometry(device_.get(), shape); }, object.shape);
         check(device_.get());
         rtcCommitGeometry(geometry.get());
+        const auto* spheres = std::get_if<Spheres>(&object.shape);
+        if (spheres != nullptr && !spheres->copies.empty()) {
+            return attach_copies(*spheres, geometry.get(), index);
+        }
         rtcAttachGeometryByID(scene_.get(), geometry.get(), index);
+    }
+
+    /// One hierarchy, placed by each motion.
+    void attach_copies(const Spheres& spheres, RTCGeometry geometry, std::uint32_t index) {
+        SceneHandle original(rtcNewScene(device_.get()));
+        rtcSetSceneFlags(original.get(), RTC_SCENE_FLAG_ROBUST | kFilterWithQuery);
+        rtcAttachGeometryByID(original.get(), geometry, index);
+        rtcCommitScene(original.get());
+        for (std::size_t k = 0; k < spheres.copies.size(); ++k) {
+            const GeometryHandle instance(
+                rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_INSTANCE));
+            rtcSetGeometryInstancedScene(instance.get(), original.get());
+            rtcSetGeometryTransform(instance.get(), 0, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR,
+                                    to_columns(spheres.copies[k]).data());
+            rtcCommitGeometry(instance.get());
+            const auto number = static_cast<unsigned>(instances_.copies.size());
+            rtcAttachGeometryByID(scene_.get(), instance.get(), instances_.first_id + number);
+            instances_.copies.push_back(
+                {spheres.copies[k], static_cast<std::uint32_t>(k * spheres.spheres.size())});
+        }
+        originals_.push_back(std::move(original));
     }
 
     /// Made of `query`, which must outlive it: the arguments of Embree 4, the context of Embree 3.
     /// `hits`: null unless every crossing is wanted.
 #if RTC_VERSION_MAJOR >= 4
-    static RTCIntersectArguments arguments(Coherence coherence, Query& query, SurfaceHits* hits,
-                                           NearestHits* nearest) {
+    RTCIntersectArguments arguments(Coherence coherence, Query& query, SurfaceHits* hits,
+                                    NearestHits* nearest) const {
         rtcInitRayQueryContext(&query);
         RTCIntersectArguments args;
         rtcInitIntersectArguments(&args);
@@ -416,6 +495,7 @@ class EmbreeTracer final : public Tracer {
         args.context = &query;
         query.hits = hits;
         query.nearest = nearest;
+        query.instances = &instances_;
         if (hits == nullptr && nearest == nullptr) return args;
         args.filter = hits != nullptr ? record : prefer_first;
         args.flags =
@@ -423,12 +503,13 @@ class EmbreeTracer final : public Tracer {
         return args;
     }
 #else
-    static QueryContext& arguments(Coherence coherence, Query& query, SurfaceHits* hits,
-                                   NearestHits* nearest) {
+    QueryContext& arguments(Coherence coherence, Query& query, SurfaceHits* hits,
+                            NearestHits* nearest) const {
         rtcInitIntersectContext(&query);
         if (coherence == Coherence::coherent) query.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
         query.hits = hits;
         query.nearest = nearest;
+        query.instances = &instances_;
         if (hits != nullptr) query.filter = record;
         if (nearest != nullptr) query.filter = prefer_first;
         return query;
@@ -493,7 +574,7 @@ class EmbreeTracer final : public Tracer {
 #endif
                 store<RayHit, Width>(packet,
                                      told_apart ? nearest.t.data() + first : packet.ray.tfar, first,
-                                     hits[k]);
+                                     instances_, hits[k]);
             }
         }
     }
@@ -527,12 +608,15 @@ class EmbreeTracer final : public Tracer {
 #endif
                 }
                 hits[k].t[lane] = told_apart ? nearest.t[lane] : single.ray.tfar;
-                hits[k].normal_x[lane] = single.hit.Ng_x;
-                hits[k].normal_y[lane] = single.hit.Ng_y;
-                hits[k].normal_z[lane] = single.hit.Ng_z;
+                const unsigned instance = single.hit.instID[0];
+                const Vec3f normal = instances_.normal(
+                    instance, {single.hit.Ng_x, single.hit.Ng_y, single.hit.Ng_z});
+                hits[k].normal_x[lane] = normal.x;
+                hits[k].normal_y[lane] = normal.y;
+                hits[k].normal_z[lane] = normal.z;
                 hits[k].u[lane] = single.hit.u;
                 hits[k].v[lane] = single.hit.v;
-                hits[k].primitive[lane] = single.hit.primID;
+                hits[k].primitive[lane] = instances_.primitive(instance, single.hit.primID);
                 hits[k].object[lane] = single.hit.geomID;
             }
         }
@@ -545,6 +629,8 @@ class EmbreeTracer final : public Tracer {
 
     DeviceHandle device_;
     SceneHandle scene_;
+    std::vector<SceneHandle> originals_;  ///< of the instances
+    Instances instances_;
     bool any_flat_ = false;  ///< objects other than spheres
     PacketWidth width_ = PacketWidth::one;
 };

@@ -502,10 +502,16 @@ void prepare(const Basis& basis, const Clusters& clusters, const Cluster& cluste
     packet.object = cluster.object;
     packet.kind = cluster.kind;
     switch (cluster.kind) {
-        case ClusterKind::spheres:
-            HWY_DYNAMIC_DISPATCH(prepare_spheres)
-            (basis, clusters.spheres[cluster.packet], packet);
+        case ClusterKind::spheres: {
+            const SphereLanes& spheres = clusters.spheres[cluster.packet];
+            if (cluster.copy == kNoCopy) {
+                HWY_DYNAMIC_DISPATCH(prepare_spheres)(basis, spheres, packet);
+            } else {
+                HWY_DYNAMIC_DISPATCH(prepare_spheres)
+                (basis, moved(spheres, clusters.copies[cluster.copy].motion), packet);
+            }
             break;
+        }
         case ClusterKind::triangles: {
             const TriangleLanes& triangles = clusters.triangles[cluster.packet];
             HWY_DYNAMIC_DISPATCH(prepare_triangles)(basis, triangles, packet);
@@ -526,8 +532,11 @@ void prepare(const Basis& basis, const Clusters& clusters, const Cluster& cluste
             break;
     }
     empty_unused(cluster.count, packet.bounds);
+    const std::uint32_t first =
+        cluster.copy == kNoCopy ? 0 : clusters.copies[cluster.copy].first_primitive;
     for (int lane = 0; lane < cluster.count; ++lane) {
-        packet.primitive[lane] = clusters.order[cluster.first + static_cast<std::uint32_t>(lane)];
+        packet.primitive[lane] =
+            first + clusters.order[cluster.first + static_cast<std::uint32_t>(lane)];
     }
 }
 

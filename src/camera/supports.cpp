@@ -32,8 +32,9 @@ std::array<double, 4> supports(const Scene& scene, const std::array<Vec3f, 4>& n
     };
     for (const Object& object : scene.objects()) {
         if (const auto* shape = std::get_if<Spheres>(&object.shape)) {
-            reduce(shape->spheres.size(), [&](Vec3f n, std::size_t i) {
-                return dot(n, shape->spheres[i].centre) - shape->spheres[i].radius;
+            reduce(shape->count(), [&](Vec3f n, std::size_t i) {
+                const Sphere sphere = shape->at(i);
+                return dot(n, sphere.centre) - sphere.radius;
             });
         } else if (const auto* mesh = std::get_if<Mesh>(&object.shape)) {
             reduce(mesh->vertices.size(),

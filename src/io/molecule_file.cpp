@@ -257,7 +257,14 @@ void MoleculeBuilder::assemble(const DataSettings& settings) {
     if (ink::atom_count(molecule_, *found) > kMostAtoms) {
         throw Error("--assembly: has more than 2^31 atoms; repair its operators");
     }
-    molecule_ = assembled(molecule_, *found);
+    // Sticks may join copies, and a box may cut them in different places.
+    const bool as_copies = is_repetition(*found) && settings.clip.everything() &&
+                           settings.representation == Representation::spheres;
+    molecule_ = as_copies ? repeated(molecule_, *found) : assembled(molecule_, *found);
+    if (molecule_.atom_count() == 0) {
+        throw Error(
+            fmt::format("--assembly: '{}' copies no chain that is drawn", settings.assembly));
+    }
 }
 
 void MoleculeBuilder::clip(const DataSettings& settings) {

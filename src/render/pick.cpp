@@ -19,28 +19,27 @@ std::string_view kind_of(const Object& object) {
     return object.kind == ObjectKind::molecule ? "atom" : "particle";
 }
 
-const std::vector<std::uint32_t>& parts_of(const Object& object) {
-    return std::visit(
-        [](const auto& shape) -> const std::vector<std::uint32_t>& { return shape.parts; },
-        object.shape);
-}
-
 /// What the file says, or else what the scene knows.
 Facts facts_of(const Object& object, std::uint32_t primitive) {
     Facts facts;
-    if (object.facts) facts = object.facts(primitive);
+    const std::size_t source = source_of(object.shape, primitive);
+    if (object.facts) facts = object.facts(static_cast<std::uint32_t>(source));
+    if (const auto* spheres = std::get_if<Spheres>(&object.shape)) {
+        for (auto& [name, value] : facts) {
+            if (name == "chain") value += copy_suffix(spheres->copy(primitive));
+        }
+    }
     const auto knows = [&](std::string_view name) {
         for (const auto& [known, value] : facts) {
             if (known == name) return true;
         }
         return false;
     };
-    if (primitive < object.elements.size() && !knows("element")) {
-        facts.emplace_back("element", element(object.elements[primitive]).symbol);
+    if (source < object.elements.size() && !knows("element")) {
+        facts.emplace_back("element", element(object.elements[source]).symbol);
     }
-    const auto& parts = parts_of(object);
-    if (primitive < parts.size() && parts[primitive] < object.part_names.size()) {
-        const std::string& name = object.part_names[parts[primitive]];
+    if (has_parts(object.shape)) {
+        const std::string name = object.part_name(part_of(object.shape, primitive));
         if (!name.empty() && !knows("chain")) facts.emplace_back("part", name);
     }
     return facts;
@@ -71,7 +70,7 @@ std::optional<Picked> pick(const Scene& scene, const Tracer& tracer, const Setti
                   .facts = facts_of(object, hit.primitive[0])};
     picked.center = picked.position;
     if (const auto* spheres = std::get_if<Spheres>(&object.shape)) {
-        picked.center = scene.frame().to_world(spheres->spheres[picked.primitive].centre);
+        picked.center = scene.frame().to_world(spheres->at(picked.primitive).centre);
     }
     return picked;
 }

@@ -39,8 +39,10 @@ class GeometryNames {
         IdLevel level;
         std::string name;
         std::vector<std::string> part_names;
-        std::vector<std::uint32_t> parts;    ///< of primitives
-        std::vector<std::uint8_t> elements;  ///< atomic numbers, of primitives
+        std::uint32_t parts_a_copy = 0;        ///< of spheres
+        std::uint32_t primitives_a_copy = 0;   ///< of spheres; 0: there are no copies
+        std::vector<std::uint32_t> parts{};    ///< of primitives
+        std::vector<std::uint8_t> elements{};  ///< atomic numbers, of primitives
     };
     std::vector<ObjectNames> objects_;
 };

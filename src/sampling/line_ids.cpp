@@ -59,18 +59,22 @@ void LineIds::add(const Object& object, IdLevel level, GeometryId& next) {
     if (const Groups* own_groups = groups(object, level)) {
         const bool shared = continues && objects_.back().groups != nullptr;
         const GeometryId first = shared ? objects_.back().first : next;
-        objects_.push_back({first, 0, own_groups, false, level});
-        next = std::max(next, first + *std::ranges::max_element(*own_groups) + 1);
+        const auto* spheres = std::get_if<Spheres>(&object.shape);
+        const std::uint32_t a_copy = spheres == nullptr ? 0 : spheres->parts_a_copy;
+        const std::size_t copies = spheres == nullptr ? 1 : spheres->copy_count();
+        objects_.push_back({first, 0, own_groups, a_copy, false, level});
+        next = std::max(next, first + *std::ranges::max_element(*own_groups) + 1 +
+                                  a_copy * static_cast<GeometryId>(copies - 1));
     } else if (continues && level != IdLevel::primitive && objects_.back().stride == 0) {
-        objects_.push_back({objects_.back().first, 0, nullptr, false, IdLevel::object});
+        objects_.push_back({objects_.back().first, 0, nullptr, 0, false, IdLevel::object});
     } else if (level == IdLevel::primitive) {
         const auto* glyphs = std::get_if<Glyphs>(&object.shape);
         const bool ball = std::holds_alternative<Spheres>(object.shape) ||
                           (glyphs != nullptr && glyphs->shape.kind == GlyphKind::ellipsoid);
-        objects_.push_back({next, 1, nullptr, ball});
+        objects_.push_back({next, 1, nullptr, 0, ball});
         next += static_cast<GeometryId>(object.primitive_count());
     } else {
-        objects_.push_back({next, 0, nullptr, false, IdLevel::object});
+        objects_.push_back({next, 0, nullptr, 0, false, IdLevel::object});
         next += 1;
     }
 }
@@ -86,7 +90,11 @@ void LineIds::resolve(const HitPacket& hits, Lanes<GeometryId>& ids) const {
 GeometryId LineIds::resolve(std::uint32_t object, std::uint32_t primitive) const {
     if (object == kNoObject) return kBackground;
     const ObjectIds& own = objects_[object];
-    return own.first + (own.groups != nullptr ? (*own.groups)[primitive] : own.stride * primitive);
+    if (own.groups == nullptr) return own.first + own.stride * primitive;
+    const auto& groups = *own.groups;
+    if (primitive < groups.size()) return own.first + groups[primitive];
+    const auto a_copy = static_cast<std::uint32_t>(groups.size());
+    return own.first + groups[primitive % a_copy] + primitive / a_copy * own.groups_a_copy;
 }
 
 std::size_t LineIds::object_of(GeometryId id) const {

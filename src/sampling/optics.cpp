@@ -92,7 +92,7 @@ Incidence Optics::refined(const Incidence& incidence) const {
     Incidence at = incidence;
     const Shape& shape = scene_.objects()[at.object].shape;
     if (const auto* spheres = std::get_if<Spheres>(&shape)) {
-        const Sphere& sphere = spheres->spheres[at.primitive];
+        const Sphere sphere = spheres->at(at.primitive);
         const double radius = static_cast<double>(sphere.radius);
         const Vec3d from = at.origin - to_double(sphere.centre);
         const double middle = -dot(from, at.dir);

@@ -123,7 +123,7 @@ void Surfaces::describe(const HitPacket& hits, int lane, Sample& sample) const {
     sample.facet = hit_normal(hits, lane);
     const Shape& shape = scene_.objects()[hits.object[lane]].shape;
     if (const auto* spheres = std::get_if<Spheres>(&shape)) {
-        const Sphere& sphere = spheres->spheres[hits.primitive[lane]];
+        const Sphere sphere = spheres->at(hits.primitive[lane]);
         sample.ball = {sphere.centre, sphere.radius};
     } else if (const auto* mesh = std::get_if<Mesh>(&shape)) {
         if (!mesh->edge_flags.empty()) sample.rim = rim_distance(*mesh, hits, lane);

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace ink {
@@ -126,7 +127,34 @@ void rename_copy(const Molecule& from, std::size_t first_atom, std::size_t copy,
     }
 }
 
+/// Whether lengths stay what they are, but for the digits that files round to.
+bool is_rigid(const Motion& motion) {
+    constexpr double kRounding = 1e-4;
+    const auto row = [&](std::size_t k) {
+        return Vec3d{motion.rotation[3 * k], motion.rotation[3 * k + 1],
+                     motion.rotation[3 * k + 2]};
+    };
+    for (std::size_t i = 0; i < 3; ++i) {
+        for (std::size_t k = i; k < 3; ++k) {
+            if (!(std::abs(dot(row(i), row(k)) - (i == k ? 1.0 : 0.0)) < kRounding)) return false;
+        }
+    }
+    return true;
+}
+
 }  // namespace
+
+bool is_repetition(const Assembly& assembly) {
+    return assembly.copies.size() == 1 && assembly.copies.front().motions.size() > 1 &&
+           std::ranges::all_of(assembly.copies.front().motions, is_rigid);
+}
+
+Molecule repeated(const Molecule& molecule, const Assembly& assembly) {
+    const Assembly::Copies& copies = assembly.copies.front();
+    Molecule out = filtered(molecule, copied_atoms(molecule, copies));
+    out.copies = copies.motions;
+    return out;
+}
 
 Molecule assembled(const Molecule& molecule, const Assembly& assembly) {
     Molecule out = without_atoms(molecule);

@@ -8,6 +8,7 @@
 
 #include "base/vec.h"
 #include "scene/field.h"
+#include "scene/motion.h"
 
 namespace ink {
 
@@ -52,6 +53,9 @@ struct Molecule {
     std::vector<Bond> bonds;      ///< that the file gives
     bool has_bond_table = false;  ///< else bonds are found by distance
 
+    /// All atoms are drawn once for each of these, by which they are moved; empty: once.
+    std::vector<Motion> copies;
+
     std::size_t atom_count() const { return positions.size(); }
     const Residue* residue(std::size_t atom) const {
         return residues.empty() ? nullptr : &residue_table[residues[atom]];
@@ -61,19 +65,6 @@ struct Molecule {
 /// The molecule with only the atoms whose entry in `keep` is not 0, and the bonds between them.
 /// Tables of residues and chains stay as they are.
 Molecule filtered(const Molecule& molecule, const std::vector<std::uint8_t>& keep);
-
-/// A rigid motion: row-major rotation, then translation.
-struct Motion {
-    std::array<double, 9> rotation{1, 0, 0, 0, 1, 0, 0, 0, 1};
-    Vec3d shift;
-
-    Vec3d operator()(Vec3d p) const {
-        const auto& m = rotation;
-        return {m[0] * p.x + m[1] * p.y + m[2] * p.z + shift.x,
-                m[3] * p.x + m[4] * p.y + m[5] * p.z + shift.y,
-                m[6] * p.x + m[7] * p.y + m[8] * p.z + shift.z};
-    }
-};
 
 /// A biological assembly: groups of chains, each with the motions that it is copied by.
 struct Assembly {
@@ -87,6 +78,12 @@ struct Assembly {
 
 /// Atoms that the assembly has.
 std::size_t atom_count(const Molecule& molecule, const Assembly& assembly);
+
+/// Whether all that the assembly copies is copied by the same motions, several of them, which are
+/// rigid: then it can be drawn as copies of what is stored once.
+bool is_repetition(const Assembly& assembly);
+/// The chains of such an assembly, with its motions as their copies.
+Molecule repeated(const Molecule& molecule, const Assembly& assembly);
 
 /// All copies as one molecule; chains of the second copy on are named "A-2", "A-3", ...
 Molecule assembled(const Molecule& molecule, const Assembly& assembly);

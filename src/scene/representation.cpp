@@ -60,6 +60,7 @@ std::vector<float> atom_radii(const Molecule& molecule, const DataSettings& sett
 struct Parts {
     std::vector<std::uint32_t> of_atom;
     std::vector<std::string> names;
+    bool own_a_copy = false;  ///< copies of a molecule have parts of their own
 };
 
 std::vector<std::string> residue_names(const Molecule& molecule) {
@@ -96,9 +97,10 @@ Parts atom_parts(const Molecule& molecule, const DataSettings& settings) {
             "--ids: part:{}: the file names no residues or chains; expected part:element", level));
     }
     if (level.empty() || level == "chain") {
-        return {by_residue(molecule, [](const Residue& r) { return r.chain; }), molecule.chains};
+        return {by_residue(molecule, [](const Residue& r) { return r.chain; }), molecule.chains,
+                true};
     }
-    if (level == "residue") return {molecule.residues, residue_names(molecule)};
+    if (level == "residue") return {molecule.residues, residue_names(molecule), true};
     if (level == "entity") {
         return {by_residue(molecule, [](const Residue& r) { return r.entity; }), molecule.entities};
     }
@@ -137,6 +139,11 @@ std::vector<Object> represent(const Molecule& molecule, const DataSettings& sett
     object.color_scale = std::move(coloring.scale);
     Parts parts = atom_parts(molecule, settings);
     shape.parts = std::move(parts.of_atom);
+    shape.copies = molecule.copies;
+    for (Motion& motion : shape.copies) {
+        motion.shift = motion(object.frame.origin) - object.frame.origin;
+    }
+    if (parts.own_a_copy) shape.parts_a_copy = static_cast<std::uint32_t>(parts.names.size());
     object.part_names = std::move(parts.names);
     object.elements = molecule.elements;
     object.shape = std::move(shape);

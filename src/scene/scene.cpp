@@ -1,5 +1,7 @@
 #include "scene/scene.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <mutex>
@@ -27,8 +29,9 @@ Bounds3f bounds_of(std::size_t count, const Add& add) {
 }
 
 Bounds3f shape_bounds(const Spheres& shape) {
-    return bounds_of(shape.spheres.size(), [&](Bounds3f& box, std::size_t i) {
-        box.add(shape.spheres[i].centre, shape.spheres[i].radius);
+    return bounds_of(shape.count(), [&](Bounds3f& box, std::size_t i) {
+        const Sphere sphere = shape.at(i);
+        box.add(sphere.centre, sphere.radius);
     });
 }
 
@@ -67,6 +70,9 @@ void rebase(Spheres& shape, const Rebase& move) {
             sphere.radius = static_cast<float>(sphere.radius * move.scale);
         }
     });
+    for (Motion& motion : shape.copies) {
+        motion.shift = motion.shift * move.scale + move.shift - motion.turn(move.shift);
+    }
 }
 
 void rebase(Mesh& shape, const Rebase& move) {
@@ -105,10 +111,45 @@ Frame frame_about(const Bounds3d& bounds) {
 }  // namespace
 
 std::size_t primitive_count(const Shape& shape) {
-    if (const auto* spheres = std::get_if<Spheres>(&shape)) return spheres->spheres.size();
+    if (const auto* spheres = std::get_if<Spheres>(&shape)) return spheres->count();
     if (const auto* mesh = std::get_if<Mesh>(&shape)) return mesh->triangles.size();
     if (const auto* glyphs = std::get_if<Glyphs>(&shape)) return glyphs->placements.size();
     return std::get<Hexahedra>(shape).corners.size();
+}
+
+std::string name_of_part(std::span<const std::string> names, std::uint32_t a_copy,
+                         std::uint32_t part) {
+    if (a_copy == 0 || part < a_copy) return part < names.size() ? names[part] : "";
+    std::string name = names[part % a_copy];
+    // Of "A/ALA 12", the chain is the copy.
+    name.insert(std::min(name.find('/'), name.size()), copy_suffix(part / a_copy));
+    return name;
+}
+
+std::string Object::part_name(std::uint32_t part) const {
+    const auto* spheres = std::get_if<Spheres>(&shape);
+    return name_of_part(part_names, spheres == nullptr ? 0 : spheres->parts_a_copy, part);
+}
+
+std::string copy_suffix(std::size_t copy) {
+    return copy == 0 ? std::string() : fmt::format("-{}", copy + 1);
+}
+
+std::uint32_t part_of(const Shape& shape, std::size_t primitive) {
+    if (const auto* spheres = std::get_if<Spheres>(&shape)) {
+        return spheres->parts[spheres->source(primitive)] +
+               static_cast<std::uint32_t>(spheres->copy(primitive)) * spheres->parts_a_copy;
+    }
+    return std::visit([&](const auto& s) { return s.parts[primitive]; }, shape);
+}
+
+bool has_parts(const Shape& shape) {
+    return std::visit([](const auto& s) { return !s.parts.empty(); }, shape);
+}
+
+std::size_t source_of(const Shape& shape, std::size_t primitive) {
+    const auto* spheres = std::get_if<Spheres>(&shape);
+    return spheres == nullptr ? primitive : spheres->source(primitive);
 }
 
 Bounds3d Object::world_bounds() const {

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <variant>
 #include <vector>
@@ -36,6 +37,18 @@ using Shape = std::variant<Spheres, Mesh, Glyphs, Hexahedra>;
 /// Spheres, triangles, glyphs or hexahedra.
 std::size_t primitive_count(const Shape& shape);
 
+bool has_parts(const Shape& shape);
+/// Which part a primitive of a shape with parts is of.
+std::uint32_t part_of(const Shape& shape, std::size_t primitive);
+/// The primitive of which another one is a copy, which is what arrays of one entry each go by.
+std::size_t source_of(const Shape& shape, std::size_t primitive);
+/// The name of a part, which is "A-2" in the second copy of "A", where copies have `a_copy` parts
+/// of their own each; empty where the part has none.
+std::string name_of_part(std::span<const std::string> names, std::uint32_t a_copy,
+                         std::uint32_t part);
+/// What tells the names of a copy from those of what it copies: "-2"; empty for the first.
+std::string copy_suffix(std::size_t copy);
+
 /// One thing that was loaded or added: a molecule, a mesh, a particle set, an exact shape.
 struct Object {
     std::string name;
@@ -59,6 +72,7 @@ struct Object {
 
     std::size_t primitive_count() const { return ink::primitive_count(shape); }
     Bounds3d world_bounds() const;
+    std::string part_name(std::uint32_t part) const;
 };
 
 /// Everything there is to see, in one frame: the bounds are centred on the origin and have a half

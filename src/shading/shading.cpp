@@ -101,6 +101,10 @@ void Shader::add_surface(const Object& object, const ResolvedMaterial& material,
         const auto& colors = std::visit(
             [](const auto& s) -> auto& { return s.colors; }, object.shape);
         if (!colors.empty()) surface.primitive_colors = colors.data();
+        const auto* spheres = std::get_if<Spheres>(&object.shape);
+        if (spheres != nullptr && !spheres->copies.empty()) {
+            surface.primitives_a_copy = static_cast<std::uint32_t>(spheres->spheres.size());
+        }
     } else {
         const auto& mesh = std::get<Mesh>(object.shape);
         surface.triangles = mesh.triangles.data();
@@ -162,7 +166,10 @@ void Shader::prefetch(const HitPacket& hits) const {
 
 Color Shader::surface_color(const Surface& surface, const HitPacket& hits, int lane) {
     const std::uint32_t primitive = hits.primitive[lane];
-    if (surface.primitive_colors != nullptr) return decode(surface.primitive_colors[primitive]);
+    if (surface.primitive_colors != nullptr) {
+        const std::uint32_t a_copy = surface.primitives_a_copy;
+        return decode(surface.primitive_colors[a_copy == 0 ? primitive : primitive % a_copy]);
+    }
     if (surface.vertex_colors == nullptr) return surface.color;
 
     const Mesh::Triangle& corners = surface.triangles[primitive];

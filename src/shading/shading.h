@@ -86,6 +86,7 @@ class Shader {
         Color color;
         float specular = 0.0F, roughness = 1.0F, metal = 0.0F;
         const Rgb8* primitive_colors = nullptr;
+        std::uint32_t primitives_a_copy = 0;  ///< that share their colours with copies; 0: none do
         const Rgb8* vertex_colors = nullptr;
         const Mesh::Triangle* triangles = nullptr;
         const std::uint32_t* corner_normals = nullptr;  ///< three a triangle
