@@ -1,15 +1,19 @@
 // What a frame costs, in units of a loop that only traces one primary ray a pixel.
 
 #include <fmt/format.h>
+#include <malloc.h>
+#include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <chrono>
 #include <cstdio>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
+#include "accel/cost.h"
 #include "accel/tracer.h"
 #include "bare_loop.h"
 #include "camera/camera.h"
@@ -54,6 +58,9 @@ struct Result {
     std::string scene;
     double r_ms;
     std::vector<Row> rows;
+    std::size_t primitives;
+    double build_ms;       ///< of the tracer, with all threads
+    double bytes_of_each;  ///< primitive, of the scene with its tracer
 };
 
 struct Variant {
@@ -106,9 +113,42 @@ std::vector<Variant> variants(const Plan& plan) {
     return list;
 }
 
+/// Of this process, that it has now.
+double resident_bytes() {
+    std::ifstream in("/proc/self/statm");
+    double total = 0.0;
+    double resident = 0.0;
+    in >> total >> resident;
+    return resident * static_cast<double>(sysconf(_SC_PAGE_SIZE));
+}
+
+struct Built {
+    double ms;
+    double bytes;  ///< a primitive, of the scene and its tracer
+};
+
+/// The faster of two. Bytes are those that the tracer was seen to take, and the scene's own.
+Built build_time(const Scene& scene) {
+    Built built{1e30, 0.0};
+    for (int k = 0; k < 2; ++k) {
+        malloc_trim(0);
+        const double before = resident_bytes();
+        const auto start = std::chrono::steady_clock::now();
+        const auto tracer = make_tracer(scene);
+        const std::chrono::duration<double, std::milli> time =
+            std::chrono::steady_clock::now() - start;
+        built.ms = std::min(built.ms, time.count());
+        malloc_trim(0);
+        built.bytes = resident_bytes() - before + cost_of(scene.objects()).stored_bytes;
+    }
+    built.bytes /= static_cast<double>(scene.primitive_count());
+    return built;
+}
+
 /// Rounds of R and every variant in turn, so that a machine that slows down slows all alike.
 Result measure(const NamedScene& named, const Plan& plan) {
     const Scene scene(named.objects);
+    const Built built = build_time(scene);
     const auto tracer = make_tracer(scene);
     const BareLoop bare(scene);
     const std::vector<Variant> list = variants(plan);
@@ -141,7 +181,7 @@ Result measure(const NamedScene& named, const Plan& plan) {
             if (round == 1 || best.render_ms < fastest[k].render_ms) fastest[k] = best;
         }
     }
-    Result result{named.name, median(r), {}};
+    Result result{named.name, median(r), {}, scene.primitive_count(), built.ms, built.bytes};
     for (std::size_t k = 0; k < list.size(); ++k) {
         result.rows.push_back({list[k].name, median(times[k]), median(ratios[k]), fastest[k]});
     }
@@ -182,8 +222,9 @@ void print_phases(const RenderStats& stats) {
 }
 
 void print(const Result& result, bool with_phases) {
-    fmt::print("{}\n  {:<28}{:>9.2f} ms\n", result.scene, "R (bare rtcIntersect16 loop)",
-               result.r_ms);
+    fmt::print("{}\n  {:<28}{:>9.2f} ms {:>8.0f} bytes a primitive, {} primitives\n", result.scene,
+               "build", result.build_ms, result.bytes_of_each, result.primitives);
+    fmt::print("  {:<28}{:>9.2f} ms\n", "R (bare rtcIntersect16 loop)", result.r_ms);
     for (const Row& row : result.rows) {
         fmt::print("  {:<28}{:>9.2f} ms {:>8.3f} R", row.what, row.median_ms, row.in_r);
         const auto alone = std::ranges::find_if(result.rows, [&](const Row& other) {
@@ -200,7 +241,11 @@ void print(const Result& result, bool with_phases) {
 }
 
 nlohmann::ordered_json to_json(const Result& result) {
-    nlohmann::ordered_json json{{"scene", result.scene}, {"r_ms", result.r_ms}};
+    nlohmann::ordered_json json{{"scene", result.scene},
+                                {"primitives", result.primitives},
+                                {"build_ms", result.build_ms},
+                                {"bytes_a_primitive", result.bytes_of_each},
+                                {"r_ms", result.r_ms}};
     for (const Row& row : result.rows) {
         nlohmann::ordered_json own{{"what", row.what}, {"ms", row.median_ms}, {"r", row.in_r}};
         for (const auto& [name, ms] : phases(row.fastest)) own["phases_ms"][name] = ms;

@@ -126,6 +126,56 @@ Text binary_stl(std::size_t bytes) {
     return text;
 }
 
+/// The corner that a triangle of the sheet has at `k`, as a number of the sheet's points.
+std::size_t sheet_index(std::size_t t, std::size_t k, std::size_t side) {
+    static constexpr std::array<std::array<std::size_t, 3>, 2> kCorners{{{0, 1, 3}, {0, 3, 2}}};
+    const std::size_t corner = kCorners[t % 2][k];
+    return (t / 2 / side + corner / 2) * (side + 1) + t / 2 % side + corner % 2;
+}
+
+/// Calls `point(x, y, z)` for the points of a sheet and `triangle(a, b, c)` for its triangles.
+template <class AddPoint, class AddTriangle>
+void make_sheet(std::size_t side, const AddPoint& point, const AddTriangle& triangle) {
+    for (std::size_t i = 0; i < (side + 1) * (side + 1); ++i) {
+        const auto x = static_cast<float>(i % (side + 1));
+        const auto y = static_cast<float>(i / (side + 1));
+        point(Vec3f{x, y, 3.0F * std::sin(0.1F * x) * std::sin(0.1F * y)});
+    }
+    for (std::size_t t = 0; t < 2 * side * side; ++t) {
+        triangle(sheet_index(t, 0, side), sheet_index(t, 1, side), sheet_index(t, 2, side));
+    }
+}
+
+Text obj(std::size_t bytes) {
+    Text text;
+    make_sheet(
+        static_cast<std::size_t>(std::sqrt(static_cast<double>(bytes) / 75.0)) + 1,
+        [&](Vec3f p) { add(text, "v {:.5f} {:.5f} {:.5f}\n", p.x, p.y, p.z); },
+        [&](std::size_t a, std::size_t b, std::size_t c) {
+            add(text, "f {} {} {}\n", a + 1, b + 1, c + 1);
+        });
+    return text;
+}
+
+Text binary_ply(std::size_t bytes) {
+    const auto side = static_cast<std::size_t>(std::sqrt(static_cast<double>(bytes) / 38.0)) + 1;
+    Text text = fmt::format(
+        "ply\nformat binary_little_endian 1.0\nelement vertex {}\nproperty float x\n"
+        "property float y\nproperty float z\nelement face {}\n"
+        "property list uchar int vertex_indices\nend_header\n",
+        (side + 1) * (side + 1), 2 * side * side);
+    make_sheet(
+        side,
+        [&](Vec3f p) {
+            for (const float v : {p.x, p.y, p.z}) add_raw(text, v);
+        },
+        [&](std::size_t a, std::size_t b, std::size_t c) {
+            add_raw(text, std::uint8_t{3});
+            for (const std::size_t i : {a, b, c}) add_raw(text, static_cast<std::int32_t>(i));
+        });
+    return text;
+}
+
 double seconds_to_read(const std::filesystem::path& file) {
     const auto start = std::chrono::steady_clock::now();
     const Scene scene(read_file(file).objects);
@@ -138,7 +188,8 @@ std::vector<ReaderRow> measure_readers(double megabytes) {
     const auto bytes = static_cast<std::size_t>(megabytes * 1e6);
     const std::filesystem::path folder = std::filesystem::temp_directory_path();
     const std::pair<const char*, Text (*)(std::size_t)> formats[] = {
-        {"pdb", pdb}, {"cif", mmcif}, {"lammpstrj", lammps}, {"vtp", raw_vtp}, {"stl", binary_stl}};
+        {"pdb", pdb},        {"cif", mmcif}, {"lammpstrj", lammps}, {"vtp", raw_vtp},
+        {"stl", binary_stl}, {"obj", obj},   {"ply", binary_ply}};
     std::vector<ReaderRow> rows;
     for (const auto& [format, make] : formats) {
         const auto file = folder / fmt::format("inktrace-bench-{}.{}", getpid(), format);

@@ -541,7 +541,18 @@ TEST_F(CommandLine, HelpOfRenderListsEverySettingUnderItsTopic) {
 
 // ---- Info ----
 
-// ---- Animations ----
+// ---- Animations and legends ----
+
+/// Of a PNG, without what its file says of how it was made; empty where there is none.
+std::vector<std::uint8_t> pixels(const fs::path& path) {
+    png_image image{};
+    image.version = PNG_IMAGE_VERSION;
+    if (png_image_begin_read_from_file(&image, path.c_str()) == 0) return {};
+    image.format = PNG_FORMAT_RGBA;
+    std::vector<std::uint8_t> bytes(PNG_IMAGE_SIZE(image));
+    png_image_finish_read(&image, nullptr, bytes.data(), 0, nullptr);
+    return bytes;
+}
 
 constexpr std::string_view kThreeFrames = "1\n\nC 0 0 0\n1\n\nC 0.5 0 0\n1\n\nC 1 0 0\n";
 
@@ -587,6 +598,78 @@ TEST_F(CommandLine, TurntableGoesRoundAndFramesTheSceneFromEverySide) {
         EXPECT_TRUE(fs::exists(file("t3.png")));
         EXPECT_FALSE(fs::exists(file("t4.png")));
     }
+}
+
+TEST_F(CommandLine, FilmHasAPictureAFrame) {
+    if (std::system("ffprobe -version > /dev/null 2>&1") != 0) GTEST_SKIP() << "no ffmpeg here";
+    folder_.write("run.xyz", kThreeFrames);
+    expect_done(run({"render", "run.xyz", "--frame", "0:", "-o", "run.mp4", "--size", "64x49",
+                     "--fps", "10", "--quiet"}));
+    EXPECT_EQ(files(), (std::set<std::string>{"run.mp4", "run.xyz"}));
+    const std::string ask = fmt::format(
+        "ffprobe -v error -count_frames -show_entries stream=width,height,r_frame_rate,"
+        "nb_read_frames -of csv=p=0 {} > {}",
+        file("run.mp4").string(), file("said.txt").string());
+    ASSERT_EQ(std::system(ask.c_str()), 0);
+    EXPECT_EQ(read_bytes(file("said.txt")).substr(0, 13), "64,48,10/1,3\n");
+}
+
+TEST_F(CommandLine, FilmNeedsFramesAndFfmpegAndLeavesNothingWithoutThem) {
+    folder_.write("run.xyz", kThreeFrames);
+    const Outcome still = run({"render", "run.xyz", "-o", "run.mp4"});
+    EXPECT_EQ(still.status, 2);
+    expect_says(still.err, {"--frame A:B", "--turntable"});
+    const char* const path = std::getenv("PATH");
+    const std::string before = path == nullptr ? "" : path;
+    setenv("PATH", "/nowhere", 1);
+    const Outcome outcome = run({"render", "run.xyz", "--frame", "0:", "-o", "run.mp4"});
+    setenv("PATH", before.c_str(), 1);
+    EXPECT_EQ(outcome.status, 1);
+    expect_says(outcome.err, {"run.mp4", "ffmpeg", "-o out_####.png"});
+    EXPECT_EQ(files(), (std::set<std::string>{"run.xyz"}));
+}
+
+TEST_F(CommandLine, AnimationKeepsRadiiAndColoursThatAreChosen) {
+    // Neighbours at distance 1, then 2; the last value of the field is the greatest of all.
+    folder_.write("run.lammpstrj", [] {
+        std::string text;
+        for (const auto& [gap, value] : {std::pair{1, 5}, {2, 50}}) {
+            text += fmt::format(
+                "ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n2\nITEM: BOX BOUNDS pp pp pp\n0 9\n0 9\n"
+                "0 9\nITEM: ATOMS id x y z heat\n1 0 0 0 0\n2 {} 0 0 {}\n",
+                gap, value);
+        }
+        return text;
+    }());
+    const auto draw = [&](const Arguments& more) {
+        Arguments arguments{"render", "run.lammpstrj", "--view", "front",  "--size",
+                            "48x48",  "--color-by",    "heat",   "--quiet"};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        expect_done(run(arguments));
+    };
+    draw({"--frame", "0:1", "-o", "a#.png"});
+    draw({"--frame", "0:1", "-o", "b#.png", "--radius", "0.5", "--color-range", "0:50"});
+    EXPECT_EQ(pixels(file("a0.png")), pixels(file("b0.png")));
+    EXPECT_EQ(pixels(file("a1.png")), pixels(file("b1.png")));
+}
+
+TEST_F(CommandLine, LegendComesWithColoursOfNumbersUnlessItIsUnwanted) {
+    folder_.write("a.csv", "x,y,z,radius,heat\n0,0,0,1,1\n3,0,0,1,7\n");
+    const auto draw = [&](const char* name, const Arguments& more) {
+        Arguments arguments{"render", "a.csv", "-o", name, "--size", "256x256", "--quiet"};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        expect_done(run(arguments));
+        return pixels(file(name));
+    };
+    const auto field = draw("a.png", {"--color-by", "heat"});
+    EXPECT_EQ(field, draw("b.png", {"--color-by", "heat", "--legend", "bottom-right"}));
+    EXPECT_NE(field, draw("c.png", {"--color-by", "heat", "--legend", "none"}));
+    EXPECT_EQ(draw("d.png", {}), draw("e.png", {"--legend", "none"}));
+    EXPECT_EQ(field, draw("f.png", {"--color-by", "heat"})) << "twice the same";
+    // As curves, the words are paths of a layer of their own.
+    expect_done(run(
+        {"render", "a.csv", "-o", "a.svg", "--size", "256x256", "--color-by", "heat", "--quiet"}));
+    expect_says(read_bytes(file("a.svg")), {"<g id=\"legend\""});
 }
 
 TEST_F(CommandLine, AnimationNeedsNumbersInTheNamesOfItsPictures) {

@@ -10,6 +10,7 @@ bool is_numbered(std::string_view output) { return output.find('#') != std::stri
 
 std::string numbered(std::string_view output, int number) {
     const std::size_t last = output.rfind('#');
+    if (last == std::string_view::npos) return std::string(output);
     std::size_t first = last;
     while (first > 0 && output[first - 1] == '#') --first;
     return fmt::format("{}{:0{}}{}", output.substr(0, first), number, last - first + 1,

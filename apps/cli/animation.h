@@ -18,7 +18,8 @@ struct Shot {
 /// Whether the name of a picture stands for several: "out_####.png".
 bool is_numbered(std::string_view output);
 
-/// The name with its last run of # replaced by a number of at least as many digits.
+/// The name with its last run of # replaced by a number of at least as many digits; as it is where
+/// it has none.
 std::string numbered(std::string_view output, int number);
 
 /// The frames that `--frame` asks for, of files that have `frames`. Throws Error (input) where

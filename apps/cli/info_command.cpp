@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cstdint>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -29,11 +31,24 @@ nlohmann::ordered_json to_json(const FileInfo& info) {
                           {"least", field.least},
                           {"most", field.most}});
     }
-    return {{"file", info.path.string()}, {"format", info.format},
-            {"kind", info.kind},          {"frames", info.frames},
-            {"counts", counts},           {"lower", info.lower},
-            {"upper", info.upper},        {"length_unit", info.length_unit},
-            {"fields", fields},           {"warnings", info.warnings}};
+    return {{"file", info.path.string()},
+            {"format", info.format},
+            {"kind", info.kind},
+            {"frames", info.frames},
+            {"counts", counts},
+            {"lower", info.lower},
+            {"upper", info.upper},
+            {"length_unit", info.length_unit},
+            {"memory_bytes", info.memory_bytes},
+            {"fields", fields},
+            {"warnings", info.warnings}};
+}
+
+std::string print_bytes(std::uint64_t bytes) {
+    const auto size = static_cast<double>(bytes);
+    if (size < 1e6) return fmt::format("{:.0f} kB", std::max(size * 1e-3, 1.0));
+    if (size < 1e9) return fmt::format("{:.0f} MB", size * 1e-6);
+    return fmt::format("{:.1f} GB", size * 1e-9);
 }
 
 void print_text(const FileInfo& info) {
@@ -49,6 +64,7 @@ void print_text(const FileInfo& info) {
              fmt::format("{}  {:.6g} to {:.6g}{}{}", "xyz"[axis], info.lower[axis],
                          info.upper[axis], info.length_unit.empty() ? "" : " ", info.length_unit));
     }
+    line("memory", print_bytes(info.memory_bytes) + " to draw, beside the picture");
     for (const FieldInfo& field : info.fields) {
         const std::string width =
             field.components == 1 ? std::string() : fmt::format(" ({})", field.components);

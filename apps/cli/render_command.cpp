@@ -12,29 +12,17 @@
 #include <string>
 #include <vector>
 
-#include "animation.h"
+#include "animate.h"
 #include "commands.h"
 #include "inktrace/inktrace.h"
 #include "messages.h"
 #include "progress_bar.h"
+#include "render_arguments.h"
 #include "settings_flags.h"
 
 namespace inktrace::cli {
 
 namespace {
-
-struct RenderArguments {
-    std::vector<std::string> inputs;
-    std::string scene;  ///< a scene file, drawn before the inputs
-    std::string output;
-    std::string lines_file;
-    std::string stats_file;
-    int repeat = 1;
-    bool quiet = false;
-    int turntable = 0;    ///< pictures of a full turn; 0: no turntable
-    bool resume = false;  ///< leave pictures of an animation that are there
-    Settings settings;
-};
 
 /// What `--stats` reports beside the settings.
 struct Report {
@@ -101,116 +89,8 @@ void write_stats(const std::filesystem::path& file, const nlohmann::ordered_json
     refuse_stats(file);
 }
 
-struct Loaded {
-    Scene scene;
-    int frames = 0;  ///< that every input has
-};
-
-Loaded load(const RenderArguments& arguments, const Settings& settings) {
-    Loaded loaded;
-    for (const std::string& input : arguments.inputs) {
-        const FileInfo info = loaded.scene.load(input, settings);
-        const bool first = loaded.frames == 0;
-        loaded.frames = first ? info.frames : std::min(loaded.frames, info.frames);
-        for (const std::string& warning : info.warnings) {
-            say(fmt::format("{}: warning: {}\n", input, warning));
-        }
-    }
-    return loaded;
-}
-
-double ms_since(std::chrono::steady_clock::time_point start) {
-    return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start)
-        .count();
-}
-
-/// Renders shot after shot by the camera of the first; a scene stays as long as its frame does.
-class Animation {
-  public:
-    explicit Animation(const RenderArguments& arguments) : arguments_(arguments) {}
-
-    void run() {
-        const auto start = std::chrono::steady_clock::now();
-        Settings settings = arguments_.settings;
-        const std::string frames = settings.get("frame");
-        const int first = std::stoi(frames.substr(0, frames.find(':')));
-        const int count = build(first);
-        shots_ = plan_shots(arguments_.output, frame_range(settings, count), arguments_.turntable);
-        camera_ = renderer_->with_camera(settings);
-        ProgressBar bar(!arguments_.quiet);
-        for (std::size_t k = 0; k < shots_.size(); ++k) draw(k, bar);
-        if (arguments_.quiet) return;
-        say(fmt::format("{}: {} pictures, {} were there, {:.2f} s\n", arguments_.output,
-                        shots_.size() - left_, left_, ms_since(start) / 1000));
-    }
-
-  private:
-    /// Loads a frame, unless it is the one that is there; returns how many the files have.
-    int build(int frame) {
-        if (renderer_ && frame == frame_) return 0;
-        Settings settings = arguments_.settings;
-        settings.set("frame", std::to_string(frame));
-        renderer_.reset();
-        Loaded loaded = load(arguments_, settings);
-        renderer_.emplace(std::move(loaded.scene));
-        frame_ = frame;
-        return loaded.frames;
-    }
-
-    void draw(std::size_t index, ProgressBar& bar) {
-        const Shot& shot = shots_[index];
-        if (arguments_.resume && std::filesystem::exists(shot.file)) {
-            ++left_;
-            return;
-        }
-        RenderOptions options = options_for_output(shot.file);
-        build(shot.frame);
-        Settings settings = arguments_.turntable > 0
-                                ? renderer_->with_turned_camera(arguments_.settings, shot.turn_deg)
-                                : *camera_;
-        settings.set("frame", std::to_string(shot.frame));
-        const auto total = static_cast<double>(shots_.size());
-        options.progress = [&](double share, double megapixels) {
-            bar.update((static_cast<double>(index) + share) / total, megapixels * total);
-        };
-        renderer_->render(settings, options).save(shot.file);
-    }
-
-    const RenderArguments& arguments_;
-    std::vector<Shot> shots_;
-    std::optional<Renderer> renderer_;
-    int frame_ = 0;  ///< of the renderer
-    std::optional<Settings> camera_;
-    std::size_t left_ = 0;
-};
-
-/// Whether the arguments ask for several pictures. Throws Error (usage) where they contradict
-/// themselves.
-bool is_animation(const RenderArguments& arguments) {
-    const bool numbered = is_numbered(arguments.output);
-    const bool frames = arguments.settings.get("frame").find(':') != std::string::npos;
-    if (!numbered && (frames || arguments.turntable > 0)) {
-        throw Error(Error::Kind::usage,
-                    "an animation needs a number in the name of its pictures; "
-                    "write for example -o out_####.png");
-    }
-    if (frames && arguments.turntable > 0) {
-        throw Error(Error::Kind::usage, "--turntable turns one frame; name one with --frame");
-    }
-    const bool one_more_file = !arguments.stats_file.empty() || !arguments.lines_file.empty();
-    if (numbered && (arguments.repeat > 1 || one_more_file)) {
-        throw Error(Error::Kind::usage,
-                    "--repeat, --stats and --lines-json are for one picture; leave them out");
-    }
-    return numbered;
-}
-
 void run(const RenderArguments& arguments) {
-    if (is_animation(arguments)) {
-        validate(arguments.settings, options_for_output(numbered(arguments.output, 0)));
-        Animation(arguments).run();
-        return;
-    }
+    if (is_animation(arguments)) return run_animation(arguments);
     RenderOptions options = options_for_output(arguments.output);
     if (!arguments.lines_file.empty()) {
         check_output(arguments.lines_file);
@@ -221,6 +101,7 @@ void run(const RenderArguments& arguments) {
     const auto start = std::chrono::steady_clock::now();
     Report report;
     Scene scene = load(arguments, arguments.settings).scene;
+    if (!arguments.quiet) announce_cost(scene, arguments.output);
     report.load_ms = ms_since(start);
     report.primitives = scene.primitive_count();
 
@@ -280,7 +161,7 @@ void add_render_command(CLI::App& app) {
     command
         ->add_option("-o,--output", arguments->output,
                      "Picture to write: .png, .jpg, .tiff, .exr; as curves: .svg, .pdf; "
-                     "### in its name is the number of a frame")
+                     "### in its name is the number of a frame; .mp4: a film of frames, by ffmpeg")
         ->type_name("FILE")
         ->required()
         ->group("Picture");
@@ -296,9 +177,13 @@ void add_render_command(CLI::App& app) {
         ->group("Run");
     command
         ->add_option("--turntable", arguments->turntable,
-                     "Pictures of a full turn round the scene, for -o out_###.png")
+                     "Pictures of a full turn round the scene, for -o out_###.png or out.mp4")
         ->type_name("K")
         ->check(CLI::Range(1, 100000).description(""))
+        ->group("Picture");
+    command->add_option("--fps", arguments->pictures_a_second, "Pictures a second of a film [25]")
+        ->type_name("R")
+        ->check(CLI::Range(0.1, 1000.0).description(""))
         ->group("Picture");
     command
         ->add_flag("--resume", arguments->resume,

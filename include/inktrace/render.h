@@ -65,6 +65,31 @@ class Picture {
     std::unique_ptr<Impl> impl_;
 };
 
+/// Pictures of one size, one after another, as a film (.mp4), which the program ffmpeg makes of
+/// them.
+class Movie {
+  public:
+    /// `rate` pictures a second. Throws Error (input) where the file cannot be written or there is
+    /// no ffmpeg, before any time is spent.
+    Movie(const std::filesystem::path& file, int width, int height, double rate);
+    Movie(Movie&&) noexcept;
+    Movie& operator=(Movie&&) noexcept;
+    ~Movie();
+
+    /// The next picture, which needs display pixels; laid over white where it is transparent.
+    /// Throws Error (input), also where it has another size.
+    void add(const Picture& picture);
+    /// The film appears, whole, with this; without it, not at all.
+    void finish();
+
+    /// Whether the name is a film's.
+    static bool is_movie(const std::filesystem::path& file);
+
+  private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
 /// How to follow a render, and what it is for.
 struct RenderOptions {
     bool display = true;  ///< make 8-bit sRGB pixels

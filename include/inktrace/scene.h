@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -35,8 +36,16 @@ struct FileInfo {
     std::vector<std::pair<std::string, std::uint64_t>> counts;  ///< ("atoms", 327), ...
     std::array<double, 3> lower{};  ///< bounds of what is drawn, in the file's units
     std::array<double, 3> upper{};
-    std::vector<FieldInfo> fields;      ///< what atoms or particles carry
-    std::vector<std::string> warnings;  ///< what was left out or guessed
+    std::vector<FieldInfo> fields;          ///< what atoms or particles carry
+    std::uint64_t memory_bytes = 0;         ///< that drawing it takes, beside the picture
+    std::optional<double> chosen_radius{};  ///< of particles whose file gives none
+    std::vector<std::string> warnings;      ///< what was left out or guessed
+};
+
+/// What a scene will take. Estimates, from measurements.
+struct SceneCost {
+    std::uint64_t bytes = 0;     ///< of memory at most, to make it ready for rays, itself included
+    double build_seconds = 0.0;  ///< until then, with all threads
 };
 
 /// What loading keeps beside what is drawn.
@@ -76,6 +85,7 @@ class Scene {
                   std::array<std::uint8_t, 3> color = {204, 204, 204});
 
     std::size_t primitive_count() const;
+    SceneCost cost() const;
 
     struct Impl;
     Impl& impl() { return *impl_; }

@@ -3,6 +3,7 @@
 #include <chrono>
 #include <utility>
 
+#include "accel/cost.h"
 #include "accel/tracer.h"
 #include "api/guard.h"
 #include "api/impl.h"
@@ -13,6 +14,7 @@
 #include "render/pick.h"
 #include "render/pipeline.h"
 #include "render/render.h"
+#include "vector/legend.h"
 #include "vector/line_art.h"
 
 namespace inktrace {
@@ -33,6 +35,7 @@ struct Renderer::Impl {
 Renderer::Renderer(Scene scene) {
     ink::guard([&] {
         if (scene.primitive_count() == 0) throw ink::Error("there is nothing to draw");
+        ink::check_memory(ink::cost_of(scene.impl().objects));
         const auto start = std::chrono::steady_clock::now();
         impl_ = std::make_unique<Impl>(std::move(scene.impl().objects));
         const std::chrono::duration<double, std::milli> time =
@@ -157,11 +160,14 @@ Picture Renderer::render(const Settings& settings, const RenderOptions& options)
                                         .rays = stats.rays,
                                         .crossings = stats.crossings,
                                         .threads = stats.threads}};
+        ink::Legend legend = ink::make_legend(impl_->scene, inner);
+        if (options.inked) ink::lay_over(legend, picture.film);
         if (options.curves) {
             const ink::Timer timer(picture.stats.curves_ms);
             picture.line_art =
                 ink::make_line_art(impl_->scene, inner, drawing, picture.film.display());
             picture.line_art->metadata = picture.metadata;
+            picture.line_art->legend = std::move(legend);
         }
         return Picture(std::make_unique<Picture::Impl>(std::move(picture)));
     });

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "accel/cost.h"
 #include "api/guard.h"
 #include "api/impl.h"
 #include "api/scene_file.h"
@@ -118,6 +119,8 @@ FileInfo describe(const std::filesystem::path& file, const ink::FileContents& co
                   .lower = to_array(bounds.lower),
                   .upper = to_array(bounds.upper),
                   .fields = {},
+                  .memory_bytes = ink::cost_of(contents.objects).bytes(),
+                  .chosen_radius = contents.objects.front().chosen_radius,
                   .warnings = contents.warnings};
     for (const ink::FieldSummary& field : contents.fields) {
         info.fields.push_back({field.name, field.components, field.least, field.most});
@@ -169,6 +172,11 @@ std::size_t Scene::primitive_count() const {
     std::size_t count = 0;
     for (const ink::Object& object : impl_->objects) count += object.primitive_count();
     return count;
+}
+
+SceneCost Scene::cost() const {
+    const ink::Cost cost = ink::cost_of(impl_->objects);
+    return {.bytes = cost.bytes(), .build_seconds = cost.build_seconds};
 }
 
 FileInfo inspect(const std::filesystem::path& file, const Settings& settings) {

@@ -10,12 +10,15 @@
 #include <system_error>
 
 #include "base/error.h"
+#include "base/memory.h"
 
 namespace ink {
 
 namespace {
 
 constexpr std::size_t kChunk = std::size_t{1} << 20;
+/// At most so much is asked of zlib at once. More than twice its buffer goes straight to its place.
+constexpr std::size_t kMostAtOnce = std::size_t{1} << 28;
 
 struct GzClose {
     void operator()(gzFile handle) const { gzclose(handle); }
@@ -45,11 +48,30 @@ GzHandle open(const std::filesystem::path& file) {
                                  reason.substr(reason.rfind(": ") + 1)));
 }
 
+/// What is made of a text takes about as much again; what is less is left to luck.
+constexpr double kShareOfText = 1.5;
+
+/// Memory is granted before it is there: a file that is too large would get the program killed on
+/// the way.
+void check_memory(const std::filesystem::path& file, std::size_t bytes) {
+    constexpr std::size_t kSmall = std::size_t{64} << 20;
+    if (bytes < kSmall) return;
+    const double needed = kShareOfText * static_cast<double>(bytes);
+    const double free = free_memory_bytes();
+    if (needed <= free) return;
+    throw InputError(file, fmt::format("needs at least {:.2g} GB of memory to be read, but {:.2g} "
+                                       "GB are free; split it, or use a larger machine",
+                                       needed * 1e-9, free * 1e-9));
+}
+
 /// Room for a file of this many bytes on disk and one more, to notice its end.
 std::size_t first_capacity(const std::filesystem::path& file, std::size_t limit) {
     std::error_code error;
     const std::uintmax_t size = std::filesystem::file_size(file, error);
-    return error ? kChunk : static_cast<std::size_t>(std::min<std::uintmax_t>(size, limit)) + 1;
+    if (error) return kChunk;
+    const auto bytes = static_cast<std::size_t>(std::min<std::uintmax_t>(size, limit));
+    check_memory(file, bytes);
+    return bytes + 1;
 }
 
 }  // namespace
@@ -59,8 +81,12 @@ std::string read_text(const std::filesystem::path& file, std::size_t limit) {
     std::string text(first_capacity(file, limit), '\0');
     std::size_t size = 0;
     for (;;) {
-        if (size == text.size()) text.resize(std::min(2 * text.size() + kChunk, limit + 1));
-        const auto room = static_cast<unsigned>(std::min(text.size() - size, kChunk));
+        if (size == text.size()) {
+            const std::size_t more = std::min(2 * text.size() + kChunk, limit + 1);
+            check_memory(file, more);
+            text.resize(more);
+        }
+        const auto room = static_cast<unsigned>(std::min(text.size() - size, kMostAtOnce));
         const int got = gzread(handle.get(), text.data() + size, room);
         if (got < 0) throw_read_error(file, handle.get());
         if (got == 0) break;

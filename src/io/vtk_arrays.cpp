@@ -215,40 +215,42 @@ class ArrayReader {
     std::string blocks_;  ///< decoded from base64
 };
 
-template <class T>
-std::vector<float> convert(std::string_view bytes, std::size_t count, bool swap) {
-    std::vector<float> values(count);
-    if constexpr (std::is_same_v<T, float>) {
+template <class T, class Number>
+std::vector<Number> convert(std::string_view bytes, std::size_t count, bool swap) {
+    std::vector<Number> values(count);
+    if constexpr (std::is_same_v<T, Number>) {
         if (!swap) {
-            std::memcpy(values.data(), bytes.data(), count * sizeof(float));
+            std::memcpy(values.data(), bytes.data(), count * sizeof(Number));
             return values;
         }
     }
     for (std::size_t i = 0; i < count; ++i) {
-        values[i] = static_cast<float>(load<T>(bytes.data() + i * sizeof(T), swap));
+        values[i] = static_cast<Number>(load<T>(bytes.data() + i * sizeof(T), swap));
     }
     return values;
 }
 
-std::vector<float> convert(std::string_view type, std::string_view bytes, std::size_t count,
-                           bool swap) {
-    if (type == "Float32") return convert<float>(bytes, count, swap);
-    if (type == "Float64") return convert<double>(bytes, count, swap);
-    if (type == "Int64") return convert<std::int64_t>(bytes, count, swap);
-    if (type == "UInt64") return convert<std::uint64_t>(bytes, count, swap);
-    if (type == "Int32") return convert<std::int32_t>(bytes, count, swap);
-    if (type == "UInt32") return convert<std::uint32_t>(bytes, count, swap);
-    if (type == "Int16") return convert<std::int16_t>(bytes, count, swap);
-    if (type == "UInt16") return convert<std::uint16_t>(bytes, count, swap);
-    if (type == "Int8") return convert<std::int8_t>(bytes, count, swap);
-    return convert<std::uint8_t>(bytes, count, swap);
+template <class Number>
+std::vector<Number> convert(std::string_view type, std::string_view bytes, std::size_t count,
+                            bool swap) {
+    if (type == "Float32") return convert<float, Number>(bytes, count, swap);
+    if (type == "Float64") return convert<double, Number>(bytes, count, swap);
+    if (type == "Int64") return convert<std::int64_t, Number>(bytes, count, swap);
+    if (type == "UInt64") return convert<std::uint64_t, Number>(bytes, count, swap);
+    if (type == "Int32") return convert<std::int32_t, Number>(bytes, count, swap);
+    if (type == "UInt32") return convert<std::uint32_t, Number>(bytes, count, swap);
+    if (type == "Int16") return convert<std::int16_t, Number>(bytes, count, swap);
+    if (type == "UInt16") return convert<std::uint16_t, Number>(bytes, count, swap);
+    if (type == "Int8") return convert<std::int8_t, Number>(bytes, count, swap);
+    return convert<std::uint8_t, Number>(bytes, count, swap);
 }
 
-std::vector<float> read_ascii(const VtkArray& array, std::size_t count, const Path& file) {
+template <class Number>
+std::vector<Number> read_ascii(const VtkArray& array, std::size_t count, const Path& file) {
     // A number takes at least a digit and a blank.
     if (count > array.text.size() / 2 + 1)
         refuse(file, array, "has fewer numbers than it announces");
-    std::vector<float> values;
+    std::vector<Number> values;
     values.reserve(count);
     const char* at = array.text.data();
     const char* const end = at + array.text.size();
@@ -263,7 +265,7 @@ std::vector<float> read_ascii(const VtkArray& array, std::size_t count, const Pa
             refuse(file, array, fmt::format("has no number in place {}", values.size() + 1));
         }
         at = result.ptr;
-        values.push_back(static_cast<float>(value));
+        values.push_back(static_cast<Number>(value));
     }
     return values;
 }
@@ -277,10 +279,13 @@ bool is_vtk_number(std::string_view type) {
     return std::ranges::find(kTypes, type) != kTypes.end();
 }
 
-std::vector<float> read_vtk_array(const VtkArray& array, const VtkEncoding& encoding,
-                                  std::size_t count, const Path& file) {
+namespace {
+
+template <class Number>
+std::vector<Number> read_numbers(const VtkArray& array, const VtkEncoding& encoding,
+                                 std::size_t count, const Path& file) {
     if (!is_vtk_number(array.type)) refuse(file, array, "is not of numbers");
-    if (array.format == "ascii") return read_ascii(array, count, file);
+    if (array.format == "ascii") return read_ascii<Number>(array, count, file);
     const std::size_t wanted = count * size_of(array.type);
     std::string buffer;
     ArrayReader reader(array, encoding, file);
@@ -288,7 +293,19 @@ std::vector<float> read_vtk_array(const VtkArray& array, const VtkEncoding& enco
     if (bytes.size() < wanted) {
         refuse(file, array, fmt::format("has {} of {} bytes", bytes.size(), wanted));
     }
-    return convert(array.type, bytes, count, reader.swap());
+    return convert<Number>(array.type, bytes, count, reader.swap());
+}
+
+}  // namespace
+
+std::vector<float> read_vtk_array(const VtkArray& array, const VtkEncoding& encoding,
+                                  std::size_t count, const Path& file) {
+    return read_numbers<float>(array, encoding, count, file);
+}
+
+std::vector<double> read_vtk_doubles(const VtkArray& array, const VtkEncoding& encoding,
+                                     std::size_t count, const Path& file) {
+    return read_numbers<double>(array, encoding, count, file);
 }
 
 }  // namespace ink

@@ -35,5 +35,8 @@ bool is_vtk_number(std::string_view type);
 /// bytes can hold.
 std::vector<float> read_vtk_array(const VtkArray& array, const VtkEncoding& encoding,
                                   std::size_t count, const std::filesystem::path& file);
+/// The same in full precision.
+std::vector<double> read_vtk_doubles(const VtkArray& array, const VtkEncoding& encoding,
+                                     std::size_t count, const std::filesystem::path& file);
 
 }  // namespace ink

@@ -1,4 +1,4 @@
-// VTK XML files of points: PolyData (.vtp) and UnstructuredGrid (.vtu).
+// VTK XML files of points and surfaces: PolyData (.vtp) and UnstructuredGrid (.vtu).
 // https://docs.vtk.org/en/latest/design_documents/VTKFileFormats.html
 
 #include <fmt/format.h>
@@ -10,18 +10,25 @@
 #include <pugixml.hpp>
 
 #include "base/error.h"
+#include "base/parallel.h"
 #include "base/text.h"
 #include "io/file_text.h"
 #include "io/formats.h"
 #include "io/molecule_file.h"
 #include "io/particle_file.h"
+#include "io/polygon_mesh.h"
 #include "io/vtk_arrays.h"
+#include "io/vtk_cells.h"
+#include "scene/color_scale.h"
+#include "scene/field.h"
 
 namespace ink {
 
 namespace {
 
 using Path = std::filesystem::path;
+
+constexpr std::size_t kGrain = 1 << 16;
 
 /// The file cut into its XML and the bytes after the "_" of <AppendedData>, which are no XML.
 struct VtkText {
@@ -38,18 +45,6 @@ VtkText cut_appended(std::string_view text) {
     VtkText cut{std::string(text.substr(0, begin)) + "</VTKFile>", text.substr(data + 1),
                 tag.find("base64") != std::string_view::npos};
     return cut;
-}
-
-VtkArray describe(const pugi::xml_node& node) {
-    VtkArray array;
-    array.name = node.attribute("Name").value();
-    array.type = node.attribute("type").value();
-    array.format = to_lower(node.attribute("format").as_string("ascii"));
-    array.components = node.attribute("NumberOfComponents").as_uint(1);
-    if (array.components == 0) array.components = 1;
-    array.offset = static_cast<std::size_t>(node.attribute("offset").as_ullong(0));
-    array.text = node.child_value();
-    return array;
 }
 
 /// OVITO writes the scalar part of quaternions last.
@@ -124,25 +119,36 @@ class VtkReader {
         const auto points = static_cast<std::size_t>(*count);
         const pugi::xml_node places = piece.child("Points").child("DataArray");
         if (!places) throw InputError(file_, "a piece has no array of points; export it again");
-        add_positions(read_vtk_array(describe(places), encoding_, 3 * points, file_));
+        const VtkArray where = describe_vtk_array(places);
+        if (where.type == "Float32" && where.format != "ascii") {
+            add_positions(read_vtk_array(where, encoding_, 3 * points, file_));
+            surface_.single_precision = true;
+        } else {
+            add_positions(read_vtk_doubles(where, encoding_, 3 * points, file_));
+        }
         for (const pugi::xml_node node : piece.child("PointData").children("DataArray")) {
-            const VtkArray array = describe(node);
+            const VtkArray array = describe_vtk_array(node);
             if (is_vtk_number(array.type)) add_array(array, points);
         }
+        other_cells_ += add_vtk_cells(piece, encoding_, points, points_before_, file_, surface_);
         points_before_ += points;
     }
 
-    void add_positions(const std::vector<float>& places) {
+    template <class Number>
+    void add_positions(const std::vector<Number>& places) {
         std::vector<Vec3f>& positions = particles_.positions;
         if (positions.empty()) {
             const Vec3d first{places[0], places[1], places[2]};
             if (std::isfinite(first.x + first.y + first.z)) particles_.origin = first;
         }
-        const Vec3f origin = to_float(particles_.origin);
-        positions.reserve(positions.size() + places.size() / 3);
-        for (std::size_t i = 0; i < places.size(); i += 3) {
-            positions.push_back(Vec3f{places[i], places[i + 1], places[i + 2]} - origin);
-        }
+        const std::size_t before = positions.size();
+        positions.resize(before + places.size() / 3);
+        parallel_ranges(places.size() / 3, kGrain, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i) {
+                const Vec3d place{places[3 * i], places[3 * i + 1], places[3 * i + 2]};
+                positions[before + i] = to_float(place - particles_.origin);
+            }
+        });
     }
 
     void add_array(const VtkArray& array, std::size_t points) {
@@ -186,14 +192,61 @@ class VtkReader {
             field.values.resize(particles_.count() * field.components);
         }
         const bool is_grid = to_lower(file_.string()).find(".vtu") != std::string::npos;
-        return particle_contents(file_, is_grid ? "VTU" : "VTP", std::move(particles_),
-                                 std::move(contents_), options_);
+        const char* const format = is_grid ? "VTU" : "VTP";
+        if (other_cells_ > 0) {
+            contents_.warnings.push_back(fmt::format(
+                "{} cells that are neither points nor polygons were left out{}.", other_cells_,
+                surface_.polygon_ends.empty() ? "; points are drawn" : ""));
+        }
+        if (!surface_.polygon_ends.empty()) return finish_surface(format);
+        return particle_contents(file_, format, std::move(particles_), std::move(contents_),
+                                 options_);
+    }
+
+    FileContents finish_surface(const char* format) {
+        surface_.format = format;
+        constexpr auto kLargest = static_cast<float>(kLargestCoordinate);
+        for (std::size_t i = 0; i < particles_.count(); ++i) {
+            const Vec3f p = particles_.positions[i];
+            if (std::abs(p.x) + std::abs(p.y) + std::abs(p.z) <= kLargest) continue;
+            throw InputError(file_, fmt::format("point {} lies at no usable place; repair it", i));
+        }
+        std::optional<ColorScale> scale = color_surface();
+        surface_.origin = particles_.origin;
+        surface_.positions = std::move(particles_.positions);
+        surface_.warnings = std::move(contents_.warnings);
+        FileContents mesh = mesh_contents(file_, std::move(surface_));
+        mesh.fields = std::move(contents_.fields);
+        mesh.objects.front().color_scale = std::move(scale);
+        return mesh;
+    }
+
+    /// By a field of the points, or a colour.
+    std::optional<ColorScale> color_surface() {
+        const std::string& word = options_.data.color_by;
+        if (word.empty() || word == "none") return std::nullopt;
+        if (const auto color = parse_color(word)) {
+            surface_.color = *color;
+            return std::nullopt;
+        }
+        const std::vector<float> values = scalar_values(particles_.fields, word);
+        if (values.size() != particles_.count()) {
+            throw Error(
+                fmt::format("--color-by: the points have no '{}'; expected a colour, none or "
+                            "a field that 'inktrace info' lists",
+                            word));
+        }
+        Coloring coloring = color_field(word, values, options_.data);
+        surface_.colors = std::move(coloring.colors);
+        return std::move(coloring.scale);
     }
 
     const Path& file_;
     const ReadOptions& options_;
     VtkEncoding encoding_;
     Particles particles_;
+    PolygonMesh surface_;  ///< the polygons over the points; none: particles are drawn
+    std::size_t other_cells_ = 0;
     FileContents contents_;
     std::size_t points_before_ = 0;  ///< of the pieces before
 };

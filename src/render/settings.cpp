@@ -153,6 +153,12 @@ const Words<ShadeMode> kShadeModes{{{"lambert", ShadeMode::lambert},
                                     {"gooch", ShadeMode::gooch},
                                     {"flat", ShadeMode::flat},
                                     {"none", ShadeMode::none}}};
+const Words<LegendPlace> kLegendPlaces{{{"auto", LegendPlace::automatic},
+                                        {"none", LegendPlace::none},
+                                        {"top-left", LegendPlace::top_left},
+                                        {"top-right", LegendPlace::top_right},
+                                        {"bottom-left", LegendPlace::bottom_left},
+                                        {"bottom-right", LegendPlace::bottom_right}}};
 const Words<Fill> kFills{{{"none", Fill::none},
                           {"flat", Fill::flat},
                           {"two-tone", Fill::two_tone},
@@ -298,6 +304,11 @@ std::vector<Setting> make_table() {
          "What to draw: shaded (no lines), lines (alone, on white) or both",
          [](S& s, Text t) { s.compose = kComposes.read(t); },
          [](const S& s) { return kComposes.print(s.compose); }, false, one_of(kComposes)},
+        {"legend", "Picture", "PLACE",
+         "What colours mean: auto (where a field gives them, in the lower right corner), none, "
+         "top-left, top-right, bottom-left or bottom-right",
+         [](S& s, Text t) { s.legend = kLegendPlaces.read(t); },
+         [](const S& s) { return kLegendPlaces.print(s.legend); }, false, one_of(kLegendPlaces)},
         {"aov", "Picture", "LIST",
          "More to write: id, depth, normal, position, lines; channels of an EXR, else pictures "
          "beside it",

@@ -59,6 +59,16 @@ struct HiddenLines {
     double dash = 12.0, gap = 3.0;
 };
 
+/// Where a legend says what colours mean.
+enum class LegendPlace : std::uint8_t {
+    automatic,  ///< in the lower right corner, where a field gives the colours
+    none,
+    top_left,
+    top_right,
+    bottom_left,
+    bottom_right
+};
+
 enum class LineBlend : std::uint8_t { automatic, display, linear };
 
 /// Everything that decides what a picture looks like. settings_table() is the way in for text.
@@ -93,6 +103,7 @@ struct Settings {
     int hidden_layers = 4;  ///< surfaces behind the first one that are looked at
 
     Compose compose = Compose::both;
+    LegendPlace legend = LegendPlace::automatic;
     ShadingSettings shading;
     int specular_depth = 4;  ///< hits of a ray after the first, [0, kMostSpecularDepth]
 

@@ -1,10 +1,13 @@
 #include "scene/mesh.h"
 
 #include <algorithm>
+#include <atomic>
 #include <bit>
 #include <cmath>
 #include <limits>
 #include <utility>
+
+#include "base/parallel.h"
 
 namespace ink {
 
@@ -59,6 +62,11 @@ class PositionIndex {
         // many corners as positions, and a smaller table stays in cache.
         if (positions_.size() * 2 > slots_.size()) grow();
         return number;
+    }
+
+    /// Asks the cache for what `number_of` will look at.
+    void prefetch(Vec3f position) const {
+        __builtin_prefetch(&slots_[hash(position + Vec3f{}) & (slots_.size() - 1)]);
     }
 
     std::vector<Vec3f> take_positions() { return std::move(positions_); }
@@ -117,10 +125,21 @@ std::vector<std::uint32_t> triangles_with_area(const Mesh& mesh) {
     return kept;
 }
 
+bool all_have_area(const Mesh& mesh) {
+    constexpr std::size_t kGrain = 1 << 15;
+    std::atomic<bool> all = true;
+    parallel_ranges(mesh.triangles.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            if (area_vector(mesh, mesh.triangles[i]) == Vec3d{}) all = false;
+        }
+    });
+    return all;
+}
+
 std::size_t drop_triangles_without_area(Mesh& mesh) {
+    if (all_have_area(mesh)) return 0;
     const std::vector<std::uint32_t> kept = triangles_with_area(mesh);
     const std::size_t dropped = mesh.triangles.size() - kept.size();
-    if (dropped == 0) return 0;
     keep(mesh.triangles, kept);
     keep(mesh.faces, kept);
     keep(mesh.parts, kept);
@@ -137,8 +156,14 @@ std::size_t weld(Mesh& mesh) {
     PositionIndex index;
     std::vector<std::uint32_t> renumbered(mesh.vertices.size(), kNone);
     std::vector<Rgb8> colors;
-    for (Mesh::Triangle& triangle : mesh.triangles) {
-        for (std::uint32_t& vertex : triangle) {
+    constexpr std::size_t kAhead = 6;  // triangles; long enough for memory to answer
+    for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+        if (i + kAhead < mesh.triangles.size()) {
+            for (const std::uint32_t vertex : mesh.triangles[i + kAhead]) {
+                index.prefetch(mesh.vertices[vertex]);
+            }
+        }
+        for (std::uint32_t& vertex : mesh.triangles[i]) {
             std::uint32_t& number = renumbered[vertex];
             if (number == kNone) {
                 number = index.number_of(mesh.vertices[vertex]);

@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
+#include <cstring>
 #include <map>
 #include <type_traits>
 #include <utility>
@@ -63,7 +65,7 @@ struct Radii {
     float at(std::size_t i) const { return each.empty() ? all : each[i]; }
 };
 
-Radii particle_radii(const Particles& particles, const DataSettings& settings,
+Radii particle_radii(const Particles& particles, const DataSettings& settings, Object& object,
                      std::vector<std::string>& warnings) {
     if (const auto uniform = uniform_radius(settings.radius)) {
         return {{}, static_cast<float>(*uniform)};
@@ -89,6 +91,7 @@ Radii particle_radii(const Particles& particles, const DataSettings& settings,
         "The particles have no radius; {:.4g} was chosen, half the distance between neighbours "
         "(--radius sets one).",
         radius));
+    object.chosen_radius = radius;
     return {{}, static_cast<float>(radius)};
 }
 
@@ -129,23 +132,25 @@ std::vector<std::uint8_t> drawable(const Particles& particles,
                                    const DataSettings& settings,
                                    std::vector<std::string>& warnings) {
     std::vector<std::uint8_t> keep(particles.count());
-    std::uint64_t bad = 0;
-    std::uint64_t outside = 0;
-    for (std::size_t i = 0; i < keep.size(); ++i) {
-        const Vec3f p = particles.positions[i];
-        const bool placed =
-            std::abs(p.x) <= kLargest && std::abs(p.y) <= kLargest && std::abs(p.z) <= kLargest;
-        const bool sized = is_drawable(primitives[i]);
-        const bool inside =
-            settings.clip.everything() || settings.clip.holds(particles.origin + to_double(p));
-        keep[i] = placed && sized && inside ? 1 : 0;
-        if (!placed || !sized) ++bad;
-        if (placed && sized && !inside) ++outside;
-    }
+    std::atomic<std::uint64_t> bad = 0;
+    std::atomic<std::uint64_t> outside = 0;
+    parallel_ranges(keep.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            const Vec3f p = particles.positions[i];
+            const bool placed =
+                std::abs(p.x) <= kLargest && std::abs(p.y) <= kLargest && std::abs(p.z) <= kLargest;
+            const bool sized = is_drawable(primitives[i]);
+            const bool inside =
+                settings.clip.everything() || settings.clip.holds(particles.origin + to_double(p));
+            keep[i] = placed && sized && inside ? 1 : 0;
+            if (!placed || !sized) ++bad;
+            if (placed && sized && !inside) ++outside;
+        }
+    });
     if (bad > 0) {
-        warnings.push_back(
-            fmt::format("{} of {} particles have no finite place or positive {} and were left out.",
-                        bad, keep.size(), std::is_same_v<Primitive, Sphere> ? "radius" : "volume"));
+        warnings.push_back(fmt::format(
+            "{} of {} particles have no finite place or positive {} and were left out.", bad.load(),
+            keep.size(), std::is_same_v<Primitive, Sphere> ? "radius" : "volume"));
     }
     if (bad + outside == keep.size()) {
         throw Error(outside > 0 ? "--clip: no particle is inside the box"
@@ -214,7 +219,7 @@ std::vector<std::uint32_t> finish(const Particles& particles, S shape,
     const std::vector<std::uint8_t> keep =
         drawable(particles, shape.*primitives, settings, warnings);
     std::vector<std::uint32_t> rows;
-    if (std::ranges::find(keep, 0) != keep.end()) {
+    if (std::memchr(keep.data(), 0, keep.size()) != nullptr) {
         keep_only(keep, shape.*primitives);
         keep_only(keep, shape.colors);
         keep_only(keep, shape.parts);
@@ -248,13 +253,14 @@ std::vector<Object> represent(Particles particles, const DataSettings& settings,
         shape.parts = std::move(parts);
     };
     if (settings.glyph == Glyph::sphere) {
-        Spheres shape = make_spheres(particles, particle_radii(particles, settings, warnings));
+        Spheres shape =
+            make_spheres(particles, particle_radii(particles, settings, object, warnings));
         complete(shape);
         rows = finish(particles, std::move(shape), &Spheres::spheres, settings, object, warnings);
     } else {
         const GlyphAxes axes(particles.fields, settings, warnings);
         const Radii radii =
-            axes.have_sizes() ? Radii() : particle_radii(particles, settings, warnings);
+            axes.have_sizes() ? Radii() : particle_radii(particles, settings, object, warnings);
         Glyphs shape = make_glyphs(particles, axes, radii, settings);
         complete(shape);
         rows = finish(particles, std::move(shape), &Glyphs::placements, settings, object, warnings);

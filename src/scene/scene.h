@@ -68,6 +68,7 @@ struct Object {
     std::optional<NormalSource> normals{};
     /// What the file says about a primitive; empty unless the reader was asked to keep it.
     FactSource facts{};
+    std::optional<double> chosen_radius{};    ///< of particles whose file gives none
     std::optional<ColorScale> color_scale{};  ///< what its colours mean, where they mean something
 
     std::size_t primitive_count() const { return ink::primitive_count(shape); }

@@ -14,6 +14,7 @@
 #include "render/drawing.h"
 #include "render/settings.h"
 #include "sampling/geometry_names.h"
+#include "vector/legend.h"
 #include "vector/strokes.h"
 
 namespace ink {
@@ -41,6 +42,7 @@ struct LineArt {
     std::vector<std::optional<Dashes>> dashes;  ///< likewise; nothing: a solid line
     std::vector<Stroke> strokes;                ///< chain after chain
     GeometryNames names;
+    Legend legend;  ///< above all
 };
 
 /// Regions reach this far below their neighbours, or a renderer that smooths the two edges one

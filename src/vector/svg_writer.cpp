@@ -92,6 +92,7 @@ class SvgText {
     void add_layer(const LineLayer& layer);
     void add_stroke(std::size_t k, const LineLayer& layer);
     void add_opacity(double opacity);
+    void add_legend();
     void add_names(GeometryId id, std::string_view also_of_class = {});
 
     const LineArt& art_;
@@ -238,11 +239,30 @@ void SvgText::add_lines() {
     text_ += "</g>\n";
 }
 
+/// Words are outlines, each over its own rim.
+void SvgText::add_legend() {
+    if (art_.legend.empty()) return;
+    text_ +=
+        "<g id=\"legend\" inkscape:groupmode=\"layer\" inkscape:label=\"legend\" "
+        "stroke-linejoin=\"round\">\n";
+    for (const LegendShape& shape : art_.legend.shapes) {
+        std::string path;
+        for (const Curve& curve : shape.outlines) append_curve(path, curve, true);
+        if (shape.is_text) {
+            add("<path fill=\"none\" stroke=\"{}\" stroke-width=\"{:.2f}\" d=\"{}\"/>\n",
+                to_string(art_.legend.paper), 2.0 * art_.legend.rim_px, path);
+        }
+        add("<path fill=\"{}\" d=\"{}\"/>\n", to_string(shape.color), path);
+    }
+    text_ += "</g>\n";
+}
+
 std::string SvgText::document() {
     add_head();
     add_paper();
     add_regions();
     add_lines();
+    add_legend();
     text_ += "</svg>\n";
     return std::move(text_);
 }

@@ -1,0 +1,167 @@
+#include "animate.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "animation.h"
+#include "messages.h"
+#include "progress_bar.h"
+
+namespace inktrace::cli {
+
+namespace {
+
+/// Renders shot after shot by the camera of the first; a scene stays as long as its frame does.
+class Animation {
+  public:
+    explicit Animation(const RenderArguments& arguments)
+        : arguments_(arguments), settings_(arguments.settings) {}
+
+    void run() {
+        const auto start = std::chrono::steady_clock::now();
+        open_movie();
+        const std::string frames = settings_.get("frame");
+        const int first = std::stoi(frames.substr(0, frames.find(':')));
+        const int count = build(first);
+        const FrameRange range = frame_range(settings_, count);
+        shots_ = plan_shots(arguments_.output, range, arguments_.turntable);
+        if (range.last > range.first) keep_colors(range);
+        camera_ = renderer_->with_camera(settings_);
+        {
+            ProgressBar bar(!arguments_.quiet);
+            for (std::size_t k = 0; k < shots_.size(); ++k) draw(k, bar);
+        }
+        if (movie_) movie_->finish();
+        if (arguments_.quiet) return;
+        const std::string there = left_ == 0 ? "" : fmt::format(", {} were there", left_);
+        say(fmt::format("{}: {} pictures{}, {:.2f} s\n", arguments_.output, shots_.size() - left_,
+                        there, ms_since(start) / 1000));
+    }
+
+  private:
+    void open_movie() {
+        if (!Movie::is_movie(arguments_.output)) return;
+        const std::string size = settings_.get("size");
+        const std::size_t cross = size.find('x');
+        movie_.emplace(arguments_.output, std::stoi(size.substr(0, cross)),
+                       std::stoi(size.substr(cross + 1)), arguments_.pictures_a_second);
+    }
+
+    /// Loads a frame, unless it is the one that is there; returns how many the files have.
+    int build(int frame) {
+        if (renderer_ && frame == frame_ && !stale_) return 0;
+        Settings settings = settings_;
+        settings.set("frame", std::to_string(frame));
+        renderer_.reset();
+        Loaded loaded = load(arguments_, settings);
+        // Or particles would breathe with their distances.
+        if (loaded.chosen_radius && arguments_.inputs.size() == 1) {
+            settings_.set("radius", fmt::format("{}", *loaded.chosen_radius));
+        }
+        renderer_.emplace(std::move(loaded.scene));
+        frame_ = frame;
+        stale_ = false;
+        return loaded.frames;
+    }
+
+    /// Gives the field that colours show one range over all frames, where it is not set.
+    void keep_colors(FrameRange range) {
+        const std::string field = settings_.get("color-by");
+        if (field.empty() || !settings_.get("color-range").empty()) return;
+        std::optional<std::pair<double, double>> values;
+        for (const std::string& input : arguments_.inputs) {
+            for (int frame = range.first; frame <= range.last; ++frame) {
+                Settings settings = settings_;
+                settings.set("frame", std::to_string(frame));
+                const FileInfo info = inspect(input, settings);
+                const auto found = std::ranges::find(info.fields, field, &FieldInfo::name);
+                if (found == info.fields.end() || found->components != 1) return;
+                if (!(found->least <= found->most)) continue;
+                if (!values) values.emplace(found->least, found->most);
+                values->first = std::min(values->first, found->least);
+                values->second = std::max(values->second, found->most);
+            }
+        }
+        if (!values || !(values->first < values->second)) return;
+        settings_.set("color-range", fmt::format("{}:{}", values->first, values->second));
+        stale_ = true;
+    }
+
+    void draw(std::size_t index, ProgressBar& bar) {
+        const Shot& shot = shots_[index];
+        if (arguments_.resume && std::filesystem::exists(shot.file)) {
+            ++left_;
+            return;
+        }
+        RenderOptions options = movie_ ? RenderOptions() : options_for_output(shot.file);
+        build(shot.frame);
+        Settings settings = arguments_.turntable > 0
+                                ? renderer_->with_turned_camera(settings_, shot.turn_deg)
+                                : *camera_;
+        settings.set("frame", std::to_string(shot.frame));
+        const auto total = static_cast<double>(shots_.size());
+        options.progress = [&](double share, double megapixels) {
+            bar.update((static_cast<double>(index) + share) / total, megapixels * total);
+        };
+        const Picture picture = renderer_->render(settings, options);
+        if (movie_) {
+            movie_->add(picture);
+        } else {
+            picture.save(shot.file);
+        }
+    }
+
+    const RenderArguments& arguments_;
+    Settings settings_;  ///< with what the first frame decides for all
+    std::optional<Movie> movie_;
+    std::vector<Shot> shots_;
+    std::optional<Renderer> renderer_;
+    int frame_ = 0;       ///< of the renderer
+    bool stale_ = false;  ///< the renderer was made by other settings
+    std::optional<Settings> camera_;
+    std::size_t left_ = 0;
+};
+
+[[noreturn]] void refuse(const char* problem) { throw Error(Error::Kind::usage, problem); }
+
+}  // namespace
+
+bool is_animation(const RenderArguments& arguments) {
+    const bool movie = Movie::is_movie(arguments.output);
+    const bool several = movie || is_numbered(arguments.output);
+    const bool frames = arguments.settings.get("frame").find(':') != std::string::npos;
+    if (!several && (frames || arguments.turntable > 0)) {
+        refuse(
+            "an animation needs a number in the name of its pictures, or a film; "
+            "write for example -o out_####.png or -o out.mp4");
+    }
+    if (frames && arguments.turntable > 0) {
+        refuse("--turntable turns one frame; name one with --frame");
+    }
+    if (movie && !frames && arguments.turntable == 0) {
+        refuse("a film shows frames or a turn: add --frame A:B or --turntable K");
+    }
+    if (movie && (arguments.resume || arguments.settings.get("aov") != "none")) {
+        refuse("--resume and --aov are for pictures; leave them out, or write -o out_####.png");
+    }
+    const bool one_more_file = !arguments.stats_file.empty() || !arguments.lines_file.empty();
+    if (several && (arguments.repeat > 1 || one_more_file)) {
+        refuse("--repeat, --stats and --lines-json are for one picture; leave them out");
+    }
+    return several;
+}
+
+void run_animation(const RenderArguments& arguments) {
+    const bool movie = Movie::is_movie(arguments.output);
+    validate(arguments.settings,
+             movie ? RenderOptions() : options_for_output(numbered(arguments.output, 0)));
+    Animation(arguments).run();
+}
+
+}  // namespace inktrace::cli

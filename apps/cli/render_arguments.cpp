@@ -1,0 +1,42 @@
+#include "render_arguments.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "messages.h"
+
+namespace inktrace::cli {
+
+Loaded load(const RenderArguments& arguments, const Settings& settings) {
+    Loaded loaded;
+    for (const std::string& input : arguments.inputs) {
+        const FileInfo info = loaded.scene.load(input, settings);
+        loaded.chosen_radius = info.chosen_radius;
+        const bool first = loaded.frames == 0;
+        loaded.frames = first ? info.frames : std::min(loaded.frames, info.frames);
+        for (const std::string& warning : info.warnings) {
+            say(fmt::format("{}: warning: {}\n", input, warning));
+        }
+    }
+    return loaded;
+}
+
+void announce_cost(const Scene& scene, const std::string& output) {
+    constexpr std::size_t kLarge = 1'000'000;
+    const std::size_t primitives = scene.primitive_count();
+    if (primitives < kLarge) return;
+    const SceneCost cost = scene.cost();
+    say(
+        fmt::format("{}: {} primitives; takes about {:.1f} GB of memory, and {:.0f} s before the "
+                    "first pixels\n",
+                    output, primitives, static_cast<double>(cost.bytes) * 1e-9,
+                    std::max(cost.build_seconds, 1.0)));
+}
+
+double ms_since(std::chrono::steady_clock::time_point start) {
+    return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start)
+        .count();
+}
+
+}  // namespace inktrace::cli

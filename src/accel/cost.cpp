@@ -1,0 +1,100 @@
+#include "accel/cost.h"
+
+#include <fmt/format.h>
+
+#include <thread>
+#include <type_traits>
+#include <variant>
+#include <vector>
+
+#include "accel/clusters.h"
+#include "base/error.h"
+#include "base/memory.h"
+
+namespace ink {
+
+namespace {
+
+template <class T>
+double size_of(const std::vector<T>& values) {
+    return static_cast<double>(values.size() * sizeof(T));
+}
+
+double stored(const Spheres& s) {
+    return size_of(s.spheres) + size_of(s.colors) + size_of(s.parts) + size_of(s.copies);
+}
+double stored(const Mesh& m) {
+    return size_of(m.vertices) + size_of(m.triangles) + size_of(m.corner_normals) +
+           size_of(m.line_normals) + size_of(m.colors) + size_of(m.parts) + size_of(m.faces) +
+           size_of(m.edge_flags);
+}
+double stored(const Glyphs& g) {
+    return size_of(g.placements) + size_of(g.colors) + size_of(g.parts);
+}
+double stored(const Hexahedra& h) {
+    return size_of(h.corners) + size_of(h.colors) + size_of(h.parts);
+}
+
+/// Of a cluster: itself, its box and the boxes above, and its share in the picture's pyramid of
+/// bounds (accel/screen_tracer.cpp).
+constexpr double kClusterBytes = (sizeof(Cluster) + 26.0 + 22.0) / kLanes;
+/// While clusters are made, each primitive has a key and its number.
+constexpr double kKeyBytes = 16.0 + sizeof(std::uint32_t);
+
+// Nanoseconds of one thread that building takes for a primitive; measured on ten million spheres,
+// on eight million triangles, and on a million glyphs, whose hierarchy is Embree's.
+constexpr double kSphereNs = 150.0;
+constexpr double kTriangleNs = 200.0;
+constexpr double kGlyphNs = 600.0;
+/// Of Embree's hierarchy over glyphs, a primitive; likewise.
+constexpr double kGlyphBytes = 160.0;
+
+struct Build {
+    double bytes, seconds;
+};
+
+Build build_of(const Spheres& s) {
+    const auto once = static_cast<double>(s.spheres.size());
+    const auto all = static_cast<double>(s.count());
+    return {once * (sizeof(SphereLanes) / double{kLanes} + kKeyBytes) + all * kClusterBytes,
+            1e-9 * kSphereNs * once};
+}
+Build build_of(const Mesh& m) {
+    const auto count = static_cast<double>(m.triangles.size());
+    return {count * (sizeof(TriangleLanes) / double{kLanes} + kKeyBytes + kClusterBytes),
+            1e-9 * kTriangleNs * count};
+}
+template <class Others>
+Build build_of(const Others& shape) {
+    const auto count = static_cast<double>(primitive_count(shape));
+    return {count * kGlyphBytes, 1e-9 * kGlyphNs * count};
+}
+
+}  // namespace
+
+Cost cost_of(std::span<const Object> objects) {
+    Cost cost;
+    for (const Object& object : objects) {
+        const Build build =
+            std::visit([](const auto& shape) { return build_of(shape); }, object.shape);
+        cost.stored_bytes +=
+            std::visit([](const auto& shape) { return stored(shape); }, object.shape);
+        cost.stored_bytes += size_of(object.elements);
+        cost.build_bytes += build.bytes;
+        cost.build_seconds += build.seconds;
+    }
+    cost.build_seconds /= std::max(std::thread::hardware_concurrency(), 1U);
+    return cost;
+}
+
+void check_memory(const Cost& cost) {
+    const double free = free_memory_bytes();
+    if (cost.build_bytes <= free) return;
+    throw Error(
+        fmt::format("the scene needs {:.2g} GB of memory more to be drawn, but {:.2g} GB "
+                    "are free; draw less of it, as with --clip or --select, or use a larger "
+                    "machine",
+                    cost.build_bytes * 1e-9, free * 1e-9));
+}
+
+}  // namespace ink
