@@ -87,6 +87,7 @@ std::vector<Variant> variants(const Plan& plan) {
     plain.size = {plan.side, plan.side};
     plain.threads = 1;
     plain.lines = {};
+    plain.shading.ambient = 0.0F;  // look plain
     add("no lines", plain);
     Settings threaded = plain;
     threaded.threads = plan.threads;
@@ -102,6 +103,11 @@ std::vector<Variant> variants(const Plan& plan) {
         lines.lines = LineTypes::all();
         add(fmt::format("edges, {} px, all types", width), lines);
     }
+    Settings soft = plain;
+    soft.lines = LineTypes::usual();
+    soft.line_width.value = 2.0;
+    soft.shading.ambient = 1.0F;
+    add("edges, 2 px, look soft", soft);
     for (int rings = 1; plan.stencils && rings <= 3; ++rings) {
         Settings lines = plain;
         lines.lines = LineTypes::usual();

@@ -114,6 +114,27 @@ TEST(SceneFile, GivesSettingsAsNumbersListsAndWords) {
     EXPECT_EQ(scene.settings(), expected);
 }
 
+TEST(SceneFile, HasLightsOfItsOwnAndLooksBeforeWhatChangesThem) {
+    const SceneFile scene(
+        R"({"settings": {"fog": 0.2, "look": "goodsell"},
+            "lights": [{"type": "camera", "from": [-1, 1, 1], "strength": 0.7},
+                       {"type": "disc", "from": [0, 5, 0], "size": 2, "color": "#ffeedd"}],
+            "objects": []})");
+    const std::vector<std::pair<std::string, std::string>> expected{
+        {"look", "goodsell"},
+        {"fog", "0.2"},
+        {"light", "camera:from=-1,1,1,strength=0.7"},
+        {"light", "disc:from=0,5,0,size=2,color=#ffeedd"}};
+    EXPECT_EQ(scene.settings(), expected);
+    inktrace::Settings settings;
+    for (const auto& [name, value] : expected) settings.set(name, value);
+    EXPECT_EQ(settings.get("fog"), "0.2");
+    EXPECT_EQ(settings.get("shade"), "flat");
+    inktrace::Settings again;
+    for (const auto& [name, value] : settings.changed()) again.set(name, value);
+    EXPECT_EQ(again.changed(), settings.changed());
+}
+
 TEST(SceneFile, ReadsFilesBesideItself) {
     TemporaryFolder folder;
     folder.write("water.xyz", "3\n\nO 0 0 0\nH 1 0 0\nH 0 1 0\n");
@@ -145,6 +166,11 @@ TEST(SceneFile, NamesLineAndKeyOfWhatIsWrong) {
     expect_complaint("{\"settings\": {\"line-widht\": 2}}",
                      ":1: settings.line-widht:", "line-width");
     expect_complaint("{\"settings\": {\"eye\": {}}}", ":1: settings.eye:", "expected");
+    expect_complaint("{\"lights\": [{\"type\": \"lamp\"}]}", ":1: lights[0].type:", "disc");
+    expect_complaint("{\"lights\": [{\"type\": \"sun\",\n\"strength\": -1}]}",
+                     ":2: lights[0].strength:", "-1");
+    expect_complaint("{\"lights\": [{\"type\": \"sky\", \"size\": 1}]}",
+                     ":1: lights[0].size:", "ground");
     expect_complaint(
         "{\"objects\": [{\"type\": \"sphere\", \"radius\": 1, \"color\": \"reddish\"}]}",
         ":1: objects[0].color:", "'reddish'");

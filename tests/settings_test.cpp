@@ -48,6 +48,19 @@ void expect_all(const std::string& message, const Texts& parts) {
 
 /// Values in the form that `get` gives, at least one for every setting.
 const std::map<std::string_view, Texts> kValues{
+    {"look", {"plain", "soft", "toon", "goodsell", "technical", "ink", "blueprint"}},
+    {"ambient", {"", "0", "0.5", "1"}},
+    {"ambient-quality", {"1", "5"}},
+    {"light",
+     {"", "camera:from=-1,1,1,size=10,strength=0.5",
+      "sun:from=0,0,1,strength=1,color=#ff8000;sky:strength=0.3,ground=#402000",
+      "disc:from=0,5,0,size=2,strength=1"}},
+    {"shadows", {"none", "hard", "soft"}},
+    {"pastel", {"0", "0.5"}},
+    {"fog", {"0", "1"}},
+    {"line-fade", {"0", "0.25"}},
+    {"line-taper", {"0", "0.25"}},
+    {"halo", {"0px", "2.5px", "1mm"}},
     {"size", {"1x1", "640x480", "65500x65500"}},
     {"dpi", {"1", "72", "299.5"}},
     {"background", {"#ffffff", "#102030", "transparent"}},
@@ -109,6 +122,16 @@ const std::map<std::string_view, Texts> kValues{
 
 /// Values that make no sense, for every setting that can be refused one.
 const std::map<std::string_view, Texts> kNonsense{
+    {"look", {"fancy", "Soft"}},
+    {"ambient", {"-0.1", "1.1", "much"}},
+    {"ambient-quality", {"", "0", "6", "2.5"}},
+    {"light", {"lamp", "sun:", "sun:from=1", "sun:from=0,0,0", "sky:size=2", "disc:strength=-1"}},
+    {"shadows", {"", "dark"}},
+    {"pastel", {"", "-1", "2"}},
+    {"fog", {"", "-1", "2"}},
+    {"line-fade", {"", "-1", "2"}},
+    {"line-taper", {"", "-1", "2"}},
+    {"halo", {"", "-1px", "wide"}},
     {"size",
      {"", "foo", "0x5", "5x0", "-1x5", "1000000x1000000", "65501x1", "5", "5x", "5x5x5", "1.5x2"}},
     {"dpi", {"", "0", "-72", "nan", "inf", "72dpi", "100001"}},
@@ -190,6 +213,7 @@ TEST(Settings, GiveBackTheValuesThatTheyWereGiven) {
 TEST(Settings, LeaveEachOtherAlone) {
     const Settings defaults;
     for (const Setting& row : settings_table()) {
+        if (row.name == "look") continue;  // that is what it is for
         const Settings settings = with(row.name, kValues.at(row.name).back());
         for (const Setting& other : settings_table()) {
             if (other.name == row.name) continue;

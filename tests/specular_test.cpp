@@ -524,11 +524,11 @@ TEST(Optics, GivesAwayAllLightAndNoMore) {
 
 TEST(LineRules, TellLevelsApart) {
     const auto rules = read_line_rules("crease@2/1:width=1px;all/+:opacity=0.5;all/0:color=red");
-    EXPECT_TRUE(rules[0].applies(LineType::crease, 2, 1));
-    EXPECT_FALSE(rules[0].applies(LineType::crease, 2, 2));
-    EXPECT_FALSE(rules[1].applies(LineType::crease, 2, 0));
-    EXPECT_TRUE(rules[1].applies(LineType::silhouette, 1, 7));
-    EXPECT_TRUE(rules[2].applies(LineType::silhouette, 1, 0));
+    EXPECT_TRUE(rules[0].applies(LineType::crease, 2, 1, false));
+    EXPECT_FALSE(rules[0].applies(LineType::crease, 2, 2, false));
+    EXPECT_FALSE(rules[1].applies(LineType::crease, 2, 0, false));
+    EXPECT_TRUE(rules[1].applies(LineType::silhouette, 1, 7, false));
+    EXPECT_TRUE(rules[2].applies(LineType::silhouette, 1, 0, false));
     EXPECT_EQ(print(read_line_rules(print(rules))), print(rules));
     EXPECT_THROW(read_line_rules("all/x:width=1px"), UsageError);
     EXPECT_THROW(read_line_rules("all/-1:width=1px"), UsageError);

@@ -29,6 +29,7 @@ struct Renderer::Impl {
 
     ink::Scene scene;
     std::unique_ptr<ink::Tracer> tracer;
+    mutable ink::AmbientCache ambient;
     double build_ms = 0.0;
 };
 
@@ -138,7 +139,8 @@ Picture Renderer::render(const Settings& settings, const RenderOptions& options)
             progress = [&, megapixels](double share) { options.progress(share, megapixels); };
         }
         ink::Drawing drawing;
-        const ink::RenderControl control{.progress = progress, .cancel = options.cancel};
+        const ink::RenderControl control{
+            .progress = progress, .cancel = options.cancel, .ambient = &impl_->ambient};
         const auto draw = [&] {
             if (options.draft < 1.0) {
                 return ink::render_draft(impl_->scene, *impl_->tracer, inner, options.draft,

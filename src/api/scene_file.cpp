@@ -10,6 +10,7 @@
 #include "base/text.h"
 #include "io/json_document.h"
 #include "io/polygon_mesh.h"
+#include "render/light_text.h"
 
 namespace ink {
 
@@ -37,6 +38,27 @@ Rgb8 read_color(const JsonNode& node) {
     return *color;
 }
 
+/// A light as a value of the setting "light"; what that refuses becomes an error at its line.
+std::string light_text(const JsonNode& node) {
+    const std::string kind = node.at("type").text();
+    const std::vector<std::string_view> kinds = light_kinds();
+    if (std::ranges::find(kinds, kind) == kinds.end()) {
+        node.at("type").fail(fmt::format("'{}' is not one of {}", kind, fmt::join(kinds, ", ")));
+    }
+    std::string text = kind;
+    for (const auto& [key, value] : node.members()) {
+        if (key == "type") continue;
+        const std::string property = fmt::format("{}={}", key, value.as_words());
+        try {
+            read_lights(kind + ":" + property);
+        } catch (const UsageError& error) {
+            value.fail(error.what());
+        }
+        text += (text == kind ? ":" : ",") + property;
+    }
+    return text;
+}
+
 template <class T>
 T read_word(const JsonNode& node, const std::vector<std::pair<std::string_view, T>>& words) {
     const std::string text = node.text();
@@ -52,7 +74,7 @@ class SceneReader {
   public:
     SceneReader(const JsonNode& root, const Settings& settings, bool facts)
         : root_(root), settings_(settings), facts_(facts) {
-        root.allow_only({"inktrace", "settings", "materials", "objects", "description"});
+        root.allow_only({"inktrace", "settings", "materials", "lights", "objects", "description"});
         if (const auto version = root.find("inktrace")) {
             if (version->number(0, 1e9) != 1) {
                 version->fail("this program reads version 1 of scene files; use a newer one");
@@ -210,13 +232,18 @@ std::vector<std::pair<std::string, std::string>> read_scene_settings(
     const JsonValue document = read_json(file);
     const JsonNode root(file, document);
     std::vector<std::pair<std::string, std::string>> list;
-    const auto settings = root.find("settings");
-    if (!settings) return list;
     Settings checked;
-    for (const auto& [name, value] : settings->members()) {
-        apply(name, value, checked);
-        list.emplace_back(name, value.as_words());
+    if (const auto settings = root.find("settings")) {
+        for (const auto& [name, value] : settings->members()) {
+            apply(name, value, checked);
+            list.emplace_back(name, value.as_words());
+        }
     }
+    if (const auto lights = root.find("lights")) {
+        for (const JsonNode& light : lights->items()) list.emplace_back("light", light_text(light));
+    }
+    // A look sets other settings, which those that are named go before.
+    std::ranges::stable_partition(list, [](const auto& entry) { return entry.first == "look"; });
     return list;
 }
 

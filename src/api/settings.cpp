@@ -4,6 +4,7 @@
 
 #include "api/guard.h"
 #include "api/impl.h"
+#include "render/looks.h"
 #include "render/scaled.h"
 
 namespace inktrace {
@@ -62,8 +63,12 @@ Settings Settings::scaled(double factor) const {
 }
 
 std::vector<std::pair<std::string, std::string>> Settings::changed() const {
-    const ink::Settings defaults;
+    ink::Settings defaults;
     std::vector<std::pair<std::string, std::string>> list;
+    if (!impl_->settings.look.empty()) {
+        list.emplace_back("look", impl_->settings.look);
+        ink::set_look(defaults, impl_->settings.look);
+    }
     for (const ink::Setting& row : ink::settings_table()) {
         std::string value = row.get(impl_->settings);
         if (value != row.get(defaults)) list.emplace_back(row.name, std::move(value));

@@ -57,6 +57,7 @@ void Chainer::make_chain(Way first) {
         chain.points.push_back(graph_.start_point(way));
         chain.t.push_back(0.5F * (before.t + piece.t));
         chain.strengths.push_back(0.5F * (before.strength + piece.strength));
+        chain.width_scales.push_back(0.5F * (before.width_scale + piece.width_scale));
         const float size = length(piece.b - piece.a);
         strength += static_cast<double>(size) * static_cast<double>(piece.strength);
         total += static_cast<double>(size);
@@ -69,6 +70,7 @@ void Chainer::make_chain(Way first) {
         chain.points.push_back(graph_.start_point(opposite(last)));
         chain.t.push_back(graph_.segment(last).t);
         chain.strengths.push_back(graph_.segment(last).strength);
+        chain.width_scales.push_back(graph_.segment(last).width_scale);
     }
     chain.strength = static_cast<float>(strength / total);
     chain.left_in_front = in_front > 0;

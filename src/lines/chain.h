@@ -17,14 +17,15 @@ struct Chain {
     LineType type = LineType::silhouette;
     /// Geometry on the left and on the right of the way along the points (y points down).
     GeometryId left = kBackground, right = kBackground;
-    bool left_in_front = true;     ///< which of the sides is nearer to the viewer
-    float strength = 1.0F;         ///< mean over the length, [0, 1]
-    bool hidden = false;           ///< on surfaces behind others
-    int level = 0;                 ///< see Segment; chains of two levels are never joined
-    bool closed = false;           ///< runs on from the last point to the first
-    std::vector<Vec2f> points;     ///< pixels; at least two, three where closed
-    std::vector<float> t;          ///< of the nearer side at each point, as in Segment
-    std::vector<float> strengths;  ///< likewise at each point
+    bool left_in_front = true;        ///< which of the sides is nearer to the viewer
+    float strength = 1.0F;            ///< mean over the length, [0, 1]
+    bool hidden = false;              ///< on surfaces behind others
+    int level = 0;                    ///< see Segment; chains of two levels are never joined
+    bool closed = false;              ///< runs on from the last point to the first
+    std::vector<Vec2f> points;        ///< pixels; at least two, three where closed
+    std::vector<float> t;             ///< of the nearer side at each point, as in Segment
+    std::vector<float> strengths;     ///< likewise at each point
+    std::vector<float> width_scales;  ///< likewise; empty: 1
     /// Junctions that the ends share with other chains: equal numbers, bitwise equal points.
     std::uint32_t first_vertex = 0, last_vertex = 0;
 };

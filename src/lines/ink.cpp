@@ -44,7 +44,10 @@ InkStroke make_ink_stroke(const Segment& segment, std::size_t style) {
             segment.strength,
             segment.t + (segment.type == LineType::mesh ? kMeshBehind : 0.0F),
             static_cast<std::uint32_t>(style),
-            segment.level == 0};
+            segment.level == 0,
+            segment.left_in_front,
+            segment.width_scale,
+            segment.gap};
 }
 
 float InkSettings::widest() const {

@@ -39,6 +39,9 @@ struct InkStroke {
     float t = 0.0F;           ///< as in Segment, for what lies on top
     std::uint32_t style = 0;  ///< among those of InkSettings
     bool direct = true;       ///< not seen in a mirror or through glass
+    bool left_in_front = true;
+    float width_scale = 1.0F;  ///< as in Segment, as is the gap
+    float gap = 0.0F;
 };
 InkStroke make_ink_stroke(const Segment& segment, std::size_t style);
 

@@ -24,6 +24,11 @@ bool has_object_rules(const Settings& settings) {
                                [](const LineRule& rule) { return rule.object > 0; });
 }
 
+bool has_inner_rules(const Settings& settings) {
+    return std::ranges::any_of(settings.look_rules, &LineRule::inner) ||
+           std::ranges::any_of(settings.line_rules, &LineRule::inner);
+}
+
 /// Levels with styles of their own: up to the highest that a rule names, and one for those beyond.
 int levels_of(const Pipeline& pipeline) {
     int levels = 1;
@@ -52,11 +57,14 @@ InkSettings ink_settings(const Pipeline& pipeline) {
     ink.profile = settings.profile();
     const int told_apart = has_object_rules(settings) ? objects : 1;
     const int levels = levels_of(pipeline);
-    for (int k = 0; k < levels * told_apart * kLineTypes; ++k) {
-        const int group = k / kLineTypes;
-        ink.styles.push_back(line_style(
-            pipeline.film, settings.line_style(static_cast<LineType>(k % kLineTypes),
-                                               group % told_apart + 1, group / told_apart)));
+    for (int inner = 0; inner <= (has_inner_rules(settings) ? 1 : 0); ++inner) {
+        for (int k = 0; k < levels * told_apart * kLineTypes; ++k) {
+            const int group = k / kLineTypes;
+            ink.styles.push_back(line_style(
+                pipeline.film,
+                settings.line_style(static_cast<LineType>(k % kLineTypes), group % told_apart + 1,
+                                    group / told_apart, inner != 0)));
+        }
     }
     if (!settings.draws_hidden()) return ink;
     for (int object = 1; object <= told_apart; ++object) {
@@ -93,11 +101,21 @@ Edges::Edges(const Pipeline& shared)
           [](const Object& object) { return std::holds_alternative<Mesh>(object.shape); })),
       tones(shared.lines.drawing != nullptr && shared.settings.divides_tones()),
       smooth_shading(shared.settings.smoothing().kind == AntiAliasing::Kind::edges),
-      balls_only(!tones && has_balls_only(shared)),
+      balls_only(!tones && shared.settings.halo_px() <= 0.0 && has_balls_only(shared)),
       wanted(shared.settings.lines),
       styles_by_object(has_object_rules(shared.settings)),
+      tells_inner(has_inner_rules(shared.settings)),
       style_levels(levels_of(shared)),
-      ink(ink_settings(shared)) {
+      ink(ink_settings(shared)),
+      halo_px(static_cast<float>(shared.settings.halo_px())),
+      depth_range(shared.shader.depth_cue().range()) {
+    if (halo_px > 0.0F) {
+        halo_style = ink.styles.size();
+        const Settings& settings = shared.settings;
+        const Rgb8 paper =
+            settings.compose == Compose::lines ? Rgb8{255, 255, 255} : settings.shading.background;
+        ink.styles.push_back({ink.widest() + 2.0F * halo_px, shared.film.in_blend_space(paper)});
+    }
     // A sharp corner can look like a jump before it is located.
     detect.depths = smooth_shading || wanted.has(LineType::self_occlusion) ||
                     wanted.has(LineType::boundary) || wanted.has(LineType::crease);
@@ -134,9 +152,22 @@ std::size_t Edges::style_of(const Segment& segment) const {
     const std::size_t object = by_object ? pipeline.ids.object_of(segment.owner) : 0;
     const std::size_t objects = styles_by_object ? pipeline.scene.objects().size() : 1;
     const auto levels = static_cast<std::size_t>(style_levels);
-    if (segment.hidden) return levels * objects * kLineTypes + object;
+    const std::size_t alike = levels * objects * kLineTypes;
+    if (segment.hidden) return alike * (tells_inner ? 2 : 1) + object;
     const std::size_t level = std::min<std::size_t>(segment.level, levels - 1);
-    return (level * objects + object) * kLineTypes + type;
+    return (is_inner(segment) ? alike : 0) + (level * objects + object) * kLineTypes + type;
+}
+
+bool Edges::is_inner(const Segment& segment) const {
+    return tells_inner && segment.left != kBackground && segment.right != kBackground &&
+           pipeline.ids.of_one_whole(segment.left, segment.right);
+}
+
+float Edges::depth_of(const Segment& segment) const {
+    const Vec2f middle = (segment.a + segment.b) * 0.5F;
+    const Vec3d from = viewpoint.origin(middle);
+    return pipeline.shader.depth_cue()(
+        to_float(from + normalize(viewpoint.direction(middle)) * static_cast<double>(segment.t)));
 }
 
 std::size_t Edges::search_tile_at(Vec2f point) const {

@@ -48,6 +48,11 @@ struct Edges {
     }
     bool wants_faces() const { return find_lines && has_meshes && wanted.has(LineType::mesh); }
 
+    /// Whether both sides of a line belong to one whole, where that makes a difference.
+    bool is_inner(const Segment& segment) const;
+    /// How far back in the scene a segment lies, in [0, 1].
+    float depth_of(const Segment& segment) const;
+
     const Pipeline& pipeline;
     int q;  ///< lattice points along a pixel's side
     Surfaces surfaces;
@@ -62,10 +67,14 @@ struct Edges {
     LocateSettings locate;
     LineTypes wanted;
     bool styles_by_object;
+    bool tells_inner;  ///< lines within one whole have styles of their own
     int style_levels;  ///< levels with styles of their own, and those beyond: 1 if all are alike
     /// Styles by type, object after object where they have styles of their own, and all that level
-    /// after level likewise.
+    /// after level likewise; then, if they are told apart, all that for lines within one whole.
     InkSettings ink;
+    float halo_px;
+    std::size_t halo_style = 0;  ///< of the paper that halos show, if there are any
+    float depth_range;           ///< of the scene as the camera sees it, scene units
     /// Empty, for the tiles' workers to start from.
     LineDensity no_lines;
     Viewpoint viewpoint;

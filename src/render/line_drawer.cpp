@@ -18,7 +18,10 @@ void LineDrawer::draw(const Tile& tile, const std::vector<TileLines>& found) {
         gather(tile, found);
         if (near_.empty() && !face_edges_) return;
         ink_.begin(tile.x0, tile.y0, tile.x1 - tile.x0, tile.y1 - tile.y0);
-        for (const InkStroke* stroke : near_) ink_.draw(*stroke, width_scale(*stroke));
+        for (const InkStroke* stroke : near_) {
+            ink_.draw(*stroke, width_scale(*stroke));
+            if (stroke->gap > 0.0F) leave_gap(*stroke);
+        }
         if (face_edges_) ink_faces(tile);
         ink_.finish();
     }
@@ -26,7 +29,34 @@ void LineDrawer::draw(const Tile& tile, const std::vector<TileLines>& found) {
 }
 
 float LineDrawer::width_scale(const InkStroke& stroke) const {
-    return thinning_.scale_at((stroke.a + stroke.b) * 0.5F, stroke.direct ? 0 : 1);
+    return thinning_.scale_at((stroke.a + stroke.b) * 0.5F, stroke.direct ? 0 : 1) *
+           stroke.width_scale;
+}
+
+/// Covers what lies far behind a line with paper, on the far side, up to a halo beyond the line.
+void LineDrawer::leave_gap(const InkStroke& stroke) {
+    // In shares of the scene: from where gaps begin to where they are whole. Chosen by eye, so that
+    // neighbouring atoms of a protein have none and the next chain behind does.
+    constexpr float kLeast = 0.03F;
+    constexpr float kWhole = 0.10F;
+    const float far = (stroke.gap / edges_.depth_range - kLeast) / (kWhole - kLeast);
+    if (far <= 0.0F) return;
+    const Vec2f along = stroke.b - stroke.a;
+    const float size = length(along);
+    if (size == 0.0F) return;
+    const LineStyle& style = edges_.ink.styles[stroke.style];
+    const float reach =
+        0.5F * style.width_px * width_scale(stroke) + edges_.halo_px * std::min(far, 1.0F);
+    // The left side of a segment is at (dy, -dx), see Segment.
+    const Vec2f left{along.y / size, -along.x / size};
+    const Vec2f shift = left * (stroke.left_in_front ? -0.5F * reach : 0.5F * reach);
+    InkStroke paper = stroke;
+    paper.a = stroke.a + shift;
+    paper.b = stroke.b + shift;
+    paper.t += 1e-3F * edges_.depth_range;  // behind the line, before all that is far
+    paper.strength = 1.0F;
+    paper.style = static_cast<std::uint32_t>(edges_.halo_style);
+    ink_.draw(paper, reach / edges_.ink.styles[edges_.halo_style].width_px);
 }
 
 /// Calls `draw(x, y, nearest edges, style, width)` for each block of the tile that has lines

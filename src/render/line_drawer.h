@@ -36,6 +36,7 @@ class LineDrawer {
     void gather(const Tile& tile, const std::vector<TileLines>& found);
     void write(const Tile& tile);
 
+    void leave_gap(const InkStroke& stroke);
     float width_scale(const InkStroke& stroke) const;
     template <class Draw>
     void for_each_face_block(const Tile& tile, Draw draw);

@@ -32,7 +32,8 @@ void read_target(std::string_view text, LineRule& rule) {
     if (at != std::string_view::npos) rule.object = read_int(text.substr(at + 1), 1, kMostObjects);
     const std::string_view type = trim(text.substr(0, at));
     rule.hidden = type == "hidden";
-    if (type != "all" && !rule.hidden) rule.type = read_line_type(type);
+    rule.inner = type == "inner";
+    if (type != "all" && !rule.hidden && !rule.inner) rule.type = read_line_type(type);
 }
 
 void read_property(std::string_view key, std::string_view value, LineRule& rule) {
@@ -69,9 +70,10 @@ std::string print(const LineRule& rule) {
     std::string level;
     if (rule.level) level = rule.and_beyond ? "/+" : fmt::format("/{}", *rule.level);
     return fmt::format("{}{}{}:{}",
-                       rule.hidden ? "hidden"
-                       : rule.type ? name_of(*rule.type)
-                                   : "all",
+                       rule.hidden  ? "hidden"
+                       : rule.inner ? "inner"
+                       : rule.type  ? name_of(*rule.type)
+                                    : "all",
                        rule.object > 0 ? fmt::format("@{}", rule.object) : "", level,
                        fmt::join(properties, ","));
 }
@@ -83,8 +85,8 @@ std::string_view name_of(LineType type) { return kNames[static_cast<std::size_t>
 LineType read_line_type(std::string_view text) {
     const auto found = std::ranges::find(kNames, text);
     if (found == kNames.end()) {
-        throw UsageError(
-            fmt::format("'{}' is not one of {}, all, hidden", text, fmt::join(kNames, ", ")));
+        throw UsageError(fmt::format("'{}' is not one of {}, all, inner, hidden", text,
+                                     fmt::join(kNames, ", ")));
     }
     return static_cast<LineType>(found - kNames.begin());
 }

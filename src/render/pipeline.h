@@ -15,6 +15,7 @@
 #include "render/settings.h"
 #include "sampling/line_ids.h"
 #include "sampling/optics.h"
+#include "shading/ambient.h"
 #include "shading/shading.h"
 
 namespace ink {
@@ -28,20 +29,30 @@ struct LineOutput {
 
 /// What every method works with.
 struct Pipeline {
-    /// `traces`: whether rays are wanted, or only what is found already is to be drawn.
+    /// `traces`: whether rays are wanted, or only what is found already is to be drawn. `kept`:
+    /// where ambient occlusion is kept from picture to picture; null if it is not.
     Pipeline(const Scene& all_objects, const Tracer& scene_tracer, const Settings& all,
-             Film& target, const LineOutput& line_output, bool traces = true)
+             Film& target, const LineOutput& line_output, bool traces = true,
+             AmbientCache* kept = nullptr)
         : scene(all_objects),
           tracer(scene_tracer),
           settings(all),
           camera(scene, all.view, all.size),
           frame(traces ? scene_tracer.frame(camera.projection(), all.threads) : nullptr),
-          shader(scene, scene_tracer, camera, all.shading),
+          shading(shading_of(all, scene)),
+          shader(scene, scene_tracer, camera, shading),
           ids(scene, all.ids),
           optics(scene),
           unit(static_cast<float>(scene.frame().unit)),
           film(target),
           lines(line_output) {
+        if (traces && *shading.ambient > 0.0F && all.compose != Compose::lines &&
+            shading.mode != ShadeMode::none) {
+            AmbientCache own;
+            bake = (kept != nullptr ? *kept : own).get(scene, tracer, shading.ambient_quality);
+            ambient = bake->seen_by(camera);
+            shader.use(ambient.get());
+        }
         if (!all.aovs.empty()) aovs.emplace(scene, camera, all.aovs, locates(), target);
     }
 
@@ -60,7 +71,10 @@ struct Pipeline {
     const Settings& settings;
     Camera camera;
     std::unique_ptr<FrameTracer> frame;  ///< null if there are no rays
+    ShadingSettings shading;
     Shader shader;
+    std::shared_ptr<const AmbientBake> bake;
+    std::unique_ptr<AmbientOcclusion> ambient;
     LineIds ids;
     Optics optics;
     float unit;  ///< length of the scene's unit in those of the file

@@ -55,7 +55,8 @@ Film render(const Scene& scene, const Tracer& tracer, const Settings& settings,
     with_threads(settings.threads, [&] {
         pipeline.emplace(
             scene, tracer, settings, film,
-            LineOutput{.ink = formats.lines && settings.draws_lines(), .drawing = drawing});
+            LineOutput{.ink = formats.lines && settings.draws_lines(), .drawing = drawing}, true,
+            control.ambient);
     });
     RenderStats result = pipeline->locates() ? render_edges(*pipeline, control)
                                              : render_stencils(*pipeline, control);

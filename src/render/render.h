@@ -9,6 +9,7 @@
 #include "render/drawing.h"
 #include "render/settings.h"
 #include "scene/scene.h"
+#include "shading/ambient.h"
 
 namespace ink {
 
@@ -19,6 +20,8 @@ struct RenderControl {
     std::function<void(double)> progress;
     /// Looked at before each tile; once true, `render` throws Cancelled.
     const std::atomic<bool>* cancel = nullptr;
+    /// Keeps ambient occlusion for other pictures of the same scene; null: it is not kept.
+    AmbientCache* ambient = nullptr;
 };
 
 /// What a render took. Times are wall time; those of phases are summed over threads and divided by

@@ -16,10 +16,13 @@ Settings scaled(const Settings& settings, double factor) {
     result.size = {side(settings.size.width), side(settings.size.height)};
     result.dpi *= factor;
     scale(result.line_width);
+    scale(result.halo);
     scale(result.ridge_scale);
     scale(result.min_length);
-    for (LineRule& rule : result.line_rules) {
-        if (rule.width) scale(*rule.width);
+    for (auto* rules : {&result.look_rules, &result.line_rules}) {
+        for (LineRule& rule : *rules) {
+            if (rule.width) scale(*rule.width);
+        }
     }
     // A change a pixel.
     result.thresholds.crease_gradient /= static_cast<float>(factor);

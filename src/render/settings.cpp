@@ -12,8 +12,10 @@
 
 #include "base/error.h"
 #include "base/text.h"
+#include "render/looks.h"
 #include "render/material_text.h"
 #include "render/values.h"
+#include "render/words.h"
 
 namespace ink {
 
@@ -41,88 +43,11 @@ Size read_size(std::string_view text) {
     return {side(sides[0]), side(sides[1])};
 }
 
-/// Empty text stands for what is chosen automatically.
-template <class Read>
-auto read_optional(std::string_view text, const Read& read) -> std::optional<decltype(read(text))> {
-    if (text.empty()) return std::nullopt;
-    return read(text);
-}
-
 double read_view_height(std::string_view text) {
     return text == "auto" ? 0.0 : read_number(text, 1e-30, 1e30);
 }
 
 std::string print(Vec3d v) { return fmt::format("{},{},{}", v.x, v.y, v.z); }
-
-/// A closed list of words and what they stand for.
-template <class T>
-struct Words {
-    std::vector<std::pair<std::string_view, T>> entries;
-
-    std::optional<T> find(std::string_view text) const {
-        for (const auto& [word, value] : entries) {
-            if (word == text) return value;
-        }
-        return std::nullopt;
-    }
-    std::string all_words() const {
-        std::vector<std::string_view> words;
-        for (const auto& entry : entries) words.push_back(entry.first);
-        return fmt::format("{}", fmt::join(words, ", "));
-    }
-
-    T read(std::string_view text) const {
-        if (const auto value = find(text)) return *value;
-        throw UsageError(fmt::format("'{}' is not one of {}", text, all_words()));
-    }
-    std::string print(T value) const {
-        for (const auto& [word, entry] : entries) {
-            if (entry == value) return std::string(word);
-        }
-        return {};
-    }
-    /// A comma-separated list; "none" is the empty one, "all" every word.
-    std::vector<T> read_list(std::string_view text) const {
-        std::vector<T> list;
-        if (text == "none") return list;
-        if (text == "all") {
-            for (const auto& entry : entries) list.push_back(entry.second);
-            return list;
-        }
-        for (const std::string_view word : split(text, ',')) {
-            const auto value = find(word);
-            if (!value) {
-                throw UsageError(
-                    fmt::format("'{}' is not one of {}; several go with commas, all "
-                                "and none stand alone",
-                                word, all_words()));
-            }
-            if (std::ranges::find(list, *value) == list.end()) list.push_back(*value);
-        }
-        return list;
-    }
-    std::string print_list(const std::vector<T>& list) const {
-        if (list.empty()) return "none";
-        std::vector<std::string> words;
-        for (const T value : list) words.push_back(print(value));
-        return fmt::format("{}", fmt::join(words, ","));
-    }
-};
-
-template <class T>
-ValueForm words_of(ValueForm::Kind kind, const Words<T>& words) {
-    ValueForm form{kind};
-    for (const auto& entry : words.entries) form.words.push_back(entry.first);
-    return form;
-}
-template <class T>
-ValueForm one_of(const Words<T>& words) {
-    return words_of(ValueForm::Kind::word, words);
-}
-template <class T>
-ValueForm some_of(const Words<T>& words) {
-    return words_of(ValueForm::Kind::list, words);
-}
 
 const Words<View> kViews{{{"auto", View::automatic},
                           {"front", View::front},
@@ -506,8 +431,15 @@ std::vector<Setting> make_table() {
 
 std::span<const Setting> settings_table() {
     static const std::vector<Setting> kTable = [] {
-        std::vector<Setting> table = data_settings_rows();
+        std::vector<Setting> table = look_rows();
+        std::ranges::move(data_settings_rows(), std::back_inserter(table));
         std::ranges::move(make_table(), std::back_inserter(table));
+        // Beside the rows of the same topic.
+        for (Setting& row : light_rows()) {
+            const auto last =
+                std::ranges::find(table.rbegin(), table.rend(), row.topic, &Setting::topic);
+            table.insert(last.base(), std::move(row));
+        }
         for (Setting& row : table) {
             row.set = [name = row.name, set = row.set](Settings& settings, std::string_view text) {
                 try {
@@ -582,18 +514,22 @@ void follow(const LineRule& rule, const Settings& settings, StrokeStyle& style) 
 
 }  // namespace
 
-StrokeStyle Settings::line_style(LineType type, int object, int level) const {
+StrokeStyle Settings::line_style(LineType type, int object, int level, bool inner) const {
     StrokeStyle style{line_width_px(), line_color, 1.0};
-    for (const LineRule& rule : line_rules) {
-        if (rule.applies(type, object, level)) follow(rule, *this, style);
+    for (const auto* rules : {&look_rules, &line_rules}) {
+        for (const LineRule& rule : *rules) {
+            if (rule.applies(type, object, level, inner)) follow(rule, *this, style);
+        }
     }
     return style;
 }
 
 StrokeStyle Settings::hidden_style(int object) const {
     StrokeStyle style{0.5 * line_width_px(), line_color, 1.0};
-    for (const LineRule& rule : line_rules) {
-        if (rule.applies_to_hidden(object)) follow(rule, *this, style);
+    for (const auto* rules : {&look_rules, &line_rules}) {
+        for (const LineRule& rule : *rules) {
+            if (rule.applies_to_hidden(object)) follow(rule, *this, style);
+        }
     }
     return style;
 }
@@ -627,6 +563,17 @@ int Settings::lattice_points() const {
     return std::clamp(side, lattice, kMostLatticePoints);
 }
 
+ShadingSettings shading_of(const Settings& settings, const Scene& scene) {
+    ShadingSettings shading = settings.shading;
+    const bool has_balls = std::ranges::any_of(scene.objects(), [](const Object& object) {
+        return object.kind == ObjectKind::molecule || object.kind == ObjectKind::particles;
+    });
+    const bool soft =
+        has_balls && settings.method == Method::edges && shading.mode == ShadeMode::lambert;
+    if (!shading.ambient) shading.ambient = soft ? 1.0F : 0.0F;
+    return shading;
+}
+
 void validate(const Settings& settings, int color_bytes) {
     check_memory(settings, color_bytes);
     if (settings.draws_hidden() && settings.method != Method::edges) {
@@ -640,6 +587,7 @@ void validate(const Settings& settings, int color_bytes) {
             fmt::format("--{}: comes to {:.0f} pixels; the most is {}", name, width, kWidest));
     };
     check_width("line-width", settings.line_width);
+    check_width("halo", settings.halo);
     for (const LineRule& rule : settings.line_rules) {
         if (rule.width) check_width("line", *rule.width);
     }

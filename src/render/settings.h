@@ -73,6 +73,9 @@ enum class LineBlend : std::uint8_t { automatic, display, linear };
 
 /// Everything that decides what a picture looks like. settings_table() is the way in for text.
 struct Settings {
+    std::string look;  ///< the last one that was set (render/looks.h); what it sets, it has set
+    std::vector<LineRule> look_rules;  ///< go before `line_rules`
+
     Size size{1024, 1024};
     double dpi = 300.0;
     int frame = 0;       ///< the first one that is drawn
@@ -99,6 +102,10 @@ struct Settings {
     double ridge_turn_deg = 3.0;   ///< that a normal turns in 1 % of the height, least
     StencilThresholds thresholds;  ///< of method "stencil"
 
+    double line_fade = 0.0;   ///< share of their ink that the farthest lines lose, [0, 1]
+    double line_taper = 0.0;  ///< share of their width that they lose, [0, 1]
+    Length halo{0.0, Length::Unit::px};  ///< gap around outlines far in front of what they hide
+
     HiddenLines hidden;
     int hidden_layers = 4;  ///< surfaces behind the first one that are looked at
 
@@ -119,9 +126,11 @@ struct Settings {
     int tile = 64;
 
     double line_width_px() const { return line_width.pixels(dpi, size.height); }
+    double halo_px() const { return halo.pixels(dpi, size.height); }
     double ridge_scale_px() const { return ridge_scale.pixels(dpi, size.height); }
     /// How lines of a type and a level are drawn that belong to an object, counted from 1.
-    StrokeStyle line_style(LineType type, int object, int level = 0) const;
+    /// `inner`: both sides are of one whole, see LineRule.
+    StrokeStyle line_style(LineType type, int object, int level = 0, bool inner = false) const;
     /// Likewise, of hidden lines.
     StrokeStyle hidden_style(int object) const;
     /// The dashes of such a line of this length; nothing if it is solid.
@@ -156,12 +165,21 @@ struct Setting {
 
 /// Rows of topic "Input": what of a file is drawn, and as what (data_settings.cpp).
 std::vector<Setting> data_settings_rows();
+/// The row of looks, which set other settings and so come first; and rows of the topics "Lines" and
+/// "Shading" about light and distance (look_settings.cpp).
+std::vector<Setting> look_rows();
+std::vector<Setting> light_rows();
 
 /// All settings, grouped by topic.
 std::span<const Setting> settings_table();
 
 /// The row of that name. Throws UsageError, with the closest name there is.
 const Setting& find_setting(std::string_view name);
+
+/// How a scene is shaded, with nothing left open: light comes from all around unless told otherwise
+/// where method "edges" draws molecules or particles. Meshes and exact shapes have diffuse light
+/// alone: it shows their form as well, in a tenth of the time.
+ShadingSettings shading_of(const Settings& settings, const Scene& scene);
 
 /// Checks what concerns several settings at once, and that the picture fits into the machine's
 /// memory, given the bytes that the colour of a pixel takes: 4 on a display, 16 as linear numbers.

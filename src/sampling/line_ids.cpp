@@ -62,19 +62,21 @@ void LineIds::add(const Object& object, IdLevel level, GeometryId& next) {
         const auto* spheres = std::get_if<Spheres>(&object.shape);
         const std::uint32_t a_copy = spheres == nullptr ? 0 : spheres->parts_a_copy;
         const std::size_t copies = spheres == nullptr ? 1 : spheres->copy_count();
-        objects_.push_back({first, 0, own_groups, a_copy, false, level});
+        const bool of_wholes = level == IdLevel::part && !object.part_wholes.empty();
+        objects_.push_back({first, 0, own_groups, a_copy, of_wholes ? &object.part_wholes : nullptr,
+                            false, level});
         next = std::max(next, first + *std::ranges::max_element(*own_groups) + 1 +
                                   a_copy * static_cast<GeometryId>(copies - 1));
     } else if (continues && level != IdLevel::primitive && objects_.back().stride == 0) {
-        objects_.push_back({objects_.back().first, 0, nullptr, 0, false, IdLevel::object});
+        objects_.push_back({objects_.back().first, 0, nullptr, 0, nullptr, false, IdLevel::object});
     } else if (level == IdLevel::primitive) {
         const auto* glyphs = std::get_if<Glyphs>(&object.shape);
         const bool ball = std::holds_alternative<Spheres>(object.shape) ||
                           (glyphs != nullptr && glyphs->shape.kind == GlyphKind::ellipsoid);
-        objects_.push_back({next, 1, nullptr, 0, ball});
+        objects_.push_back({next, 1, nullptr, 0, groups(object, IdLevel::part), ball});
         next += static_cast<GeometryId>(object.primitive_count());
     } else {
-        objects_.push_back({next, 0, nullptr, 0, false, IdLevel::object});
+        objects_.push_back({next, 0, nullptr, 0, nullptr, false, IdLevel::object});
         next += 1;
     }
 }
@@ -95,6 +97,19 @@ GeometryId LineIds::resolve(std::uint32_t object, std::uint32_t primitive) const
     if (primitive < groups.size()) return own.first + groups[primitive];
     const auto a_copy = static_cast<std::uint32_t>(groups.size());
     return own.first + groups[primitive % a_copy] + primitive / a_copy * own.groups_a_copy;
+}
+
+bool LineIds::of_one_whole(GeometryId a, GeometryId b) const {
+    const ObjectIds& first = objects_[object_of(a)];
+    const ObjectIds& second = objects_[object_of(b)];
+    if (first.wholes == nullptr || second.wholes == nullptr) return a == b;
+    // Objects that share their IDs share their parts.
+    const bool related = &first == &second || first.wholes == second.wholes;
+    const std::size_t a_copy = first.wholes->size();
+    const std::size_t offset = a - first.first;
+    const std::size_t other = b - second.first;
+    return related && offset / a_copy == other / a_copy &&
+           (*first.wholes)[offset % a_copy] == (*second.wholes)[other % a_copy];
 }
 
 std::size_t LineIds::object_of(GeometryId id) const {

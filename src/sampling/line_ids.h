@@ -28,6 +28,9 @@ class LineIds {
 
     /// Index of the object that an ID belongs to, which must not be the background's.
     std::size_t object_of(GeometryId id) const;
+    /// Whether two IDs, neither the background's, are of one whole: atoms or residues of one chain,
+    /// primitives of one part.
+    bool of_one_whole(GeometryId a, GeometryId b) const;
     /// The first ID of an object of the scene, and at which level its own are told apart.
     GeometryId first(std::size_t object) const { return objects_[object].first; }
     IdLevel level(std::size_t object) const { return objects_[object].level; }
@@ -41,7 +44,9 @@ class LineIds {
         std::uint32_t stride;  ///< 1: every primitive has its own; 0: they share one
         const std::vector<std::uint32_t>* groups = nullptr;  ///< instead: an offset a primitive
         std::uint32_t groups_a_copy = 0;                     ///< offset from copy to copy
-        bool ball = false;                                   ///< an ID is one sphere
+        /// An ID's whole, by its offset within one copy; null where IDs are no parts of anything.
+        const std::vector<std::uint32_t>* wholes = nullptr;
+        bool ball = false;  ///< an ID is one sphere
         IdLevel level = IdLevel::primitive;
     };
     std::vector<ObjectIds> objects_;

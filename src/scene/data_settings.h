@@ -63,6 +63,9 @@ struct DataSettings {
     std::optional<std::pair<double, double>> color_range = {};  ///< of a field; default: all of it
 
     std::string parts = {};  ///< "chain", "residue", ... or a field of whole numbers; empty: chains
+    /// Unless `parts` says otherwise: residues, and lines run between them. For molecules whose
+    /// file names any.
+    bool by_residue = false;
 };
 
 }  // namespace ink

@@ -60,7 +60,8 @@ std::vector<float> atom_radii(const Molecule& molecule, const DataSettings& sett
 struct Parts {
     std::vector<std::uint32_t> of_atom;
     std::vector<std::string> names;
-    bool own_a_copy = false;  ///< copies of a molecule have parts of their own
+    bool own_a_copy = false;              ///< copies of a molecule have parts of their own
+    std::vector<std::uint32_t> wholes{};  ///< see Object
 };
 
 std::vector<std::string> residue_names(const Molecule& molecule) {
@@ -89,7 +90,9 @@ std::vector<std::uint32_t> by_residue(const Molecule& molecule, const Index& ind
 }
 
 Parts atom_parts(const Molecule& molecule, const DataSettings& settings) {
-    const std::string& level = settings.parts;
+    const bool by_residue_itself =
+        settings.by_residue && settings.parts.empty() && !molecule.residues.empty();
+    const std::string level = by_residue_itself ? "residue" : settings.parts;
     if (level == "element") return element_parts(molecule);
     if (molecule.residues.empty()) {
         if (level.empty()) return {};
@@ -100,7 +103,11 @@ Parts atom_parts(const Molecule& molecule, const DataSettings& settings) {
         return {by_residue(molecule, [](const Residue& r) { return r.chain; }), molecule.chains,
                 true};
     }
-    if (level == "residue") return {molecule.residues, residue_names(molecule), true};
+    if (level == "residue") {
+        Parts parts{molecule.residues, residue_names(molecule), true};
+        for (const Residue& residue : molecule.residue_table) parts.wholes.push_back(residue.chain);
+        return parts;
+    }
     if (level == "entity") {
         return {by_residue(molecule, [](const Residue& r) { return r.entity; }), molecule.entities};
     }
@@ -145,6 +152,8 @@ std::vector<Object> represent(const Molecule& molecule, const DataSettings& sett
     }
     if (parts.own_a_copy) shape.parts_a_copy = static_cast<std::uint32_t>(parts.names.size());
     object.part_names = std::move(parts.names);
+    object.part_wholes = std::move(parts.wholes);
+    if (settings.by_residue && !object.part_wholes.empty()) object.usual_ids = IdLevel::part;
     object.elements = molecule.elements;
     object.shape = std::move(shape);
     std::vector<Object> objects;

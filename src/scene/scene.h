@@ -57,6 +57,8 @@ struct Object {
     Shape shape;
     Material material{};
     std::vector<std::string> part_names{};
+    /// Of each part: what it is a part of itself, as residues are of a chain; or empty.
+    std::vector<std::uint32_t> part_wholes{};
     std::vector<std::uint8_t> elements{};  ///< atomic numbers, one an atom; of molecules only
     /// What lines tell apart and find creases by; default: as for the picture.
     std::optional<IdLevel> ids{};

@@ -81,6 +81,7 @@ std::optional<Object> make_sticks(const Molecule& molecule, const Object& atoms,
     object.shape = std::move(sticks);
     object.material = atoms.material;
     object.part_names = atoms.part_names;
+    object.part_wholes = atoms.part_wholes;
     object.usual_ids = atoms.usual_ids;
     object.continues_previous = true;
     return object;

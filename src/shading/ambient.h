@@ -1,12 +1,16 @@
 #pragma once
 
 #include <memory>
+#include <mutex>
 
 #include "accel/tracer.h"
 #include "base/lanes.h"
+#include "camera/camera.h"
 #include "shading/lighting.h"
 
 namespace ink {
+
+inline constexpr int kMostAmbientQuality = 5;
 
 /// How far points of surfaces lie open to a sky all around: the share of directions above the
 /// surface, weighted by the cosine to its normal, into which no part of the scene is seen. In
@@ -15,6 +19,38 @@ class AmbientOcclusion {
   public:
     virtual ~AmbientOcclusion() = default;
     virtual void openness(const SurfacePacket& surface, Lanes<float>& open) const = 0;
+};
+
+/// Openness that is computed where a picture first needs it and kept for the next one. It belongs
+/// to surfaces, not to the picture: on spheres and triangles, at the nodes of a grid over each of
+/// them, whose spacing is a power of two near three pixels. So a turned or moved camera finds most
+/// of it done, and what is found does not depend on the order in which it was asked for.
+class AmbientBake {
+  public:
+    /// `quality` in [1, kMostAmbientQuality]: each step looks into twice as many directions. Scene
+    /// and tracer must outlive it.
+    AmbientBake(const Scene& scene, const Tracer& tracer, int quality);
+    ~AmbientBake();
+
+    /// As seen by a camera, which decides how fine the grids are. Must not outlive bake or camera.
+    std::unique_ptr<AmbientOcclusion> seen_by(const Camera& camera) const;
+
+    struct Impl;
+
+  private:
+    std::unique_ptr<Impl> impl_;
+};
+
+/// The bake of a scene, made when it is first asked for and kept as long as quality does not
+/// change. Safe to use from many threads.
+class AmbientCache {
+  public:
+    std::shared_ptr<const AmbientBake> get(const Scene& scene, const Tracer& tracer, int quality);
+
+  private:
+    std::mutex mutex_;
+    std::shared_ptr<const AmbientBake> bake_;
+    int quality_ = 0;
 };
 
 }  // namespace ink

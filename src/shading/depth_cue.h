@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+
 #include "base/vec.h"
 #include "camera/camera.h"
 #include "scene/scene.h"
@@ -20,6 +22,7 @@ class DepthCue {
                           extent(back_.y, box.lower.y, box.upper.y) +
                           extent(back_.z, box.lower.z, box.upper.z);
         near_ = sum.y;
+        range_ = std::max(sum.y - sum.x, 1e-6F);
         scale_ = sum.y > sum.x ? 1.0F / (sum.y - sum.x) : 0.0F;
     }
 
@@ -29,9 +32,12 @@ class DepthCue {
         return depth < 0.0F ? 0.0F : depth > 1.0F ? 1.0F : depth;
     }
 
+    /// From the nearest to the farthest, scene units.
+    float range() const { return range_; }
+
   private:
     Vec3f back_;
-    float near_ = 0.0F, scale_ = 0.0F;
+    float near_ = 0.0F, scale_ = 0.0F, range_ = 1.0F;
 };
 
 }  // namespace ink

@@ -72,15 +72,15 @@ LightRig default_lights(const Camera& camera, float ambient) {
     const auto between = [&](float studio, float overcast) {
         return ambient == 0.0F ? studio : studio + ambient * (overcast - studio);
     };
-    const float middle = between(0.17F, 0.60F);
-    const float slope = between(0.06F, 0.12F);
+    const float middle = between(0.17F, 0.48F);
+    const float slope = between(0.06F, 0.10F);
     LightRig rig;
-    rig.sources = {directional(view_direction(camera, -0.45F, 0.65F, 0.75F), between(0.66F, 0.40F)),
+    rig.sources = {directional(view_direction(camera, -0.45F, 0.65F, 0.75F), between(0.66F, 0.44F)),
                    directional(view_direction(camera, 0.75F, -0.1F, 0.65F), between(0.16F, 0.08F))};
     rig.sources[1].shadows = false;
     if (ambient > 0.0F) {
         rig.sources.push_back(
-            directional(view_direction(camera, 0.5F, 0.55F, -0.67F), between(0.0F, 0.25F)));
+            directional(view_direction(camera, 0.5F, 0.55F, -0.67F), between(0.0F, 0.20F)));
         rig.sources[2].shadows = false;
     }
     rig.sky = {{middle, middle, middle}, {slope, slope, slope}, camera.up()};

@@ -69,7 +69,7 @@ Shader::Shader(const Scene& scene, const Tracer& tracer, const Camera& camera,
                const ShadingSettings& settings)
     : mode_(settings.mode),
       pastel_(settings.pastel),
-      lights_(settings.lights.empty() ? default_lights(camera, settings.ambient)
+      lights_(settings.lights.empty() ? default_lights(camera, settings.ambient.value_or(0.0F))
                                       : make_lights(scene, camera, settings.lights)),
       shadows_(tracer, settings.shadows),
       depth_cue_(scene, camera),

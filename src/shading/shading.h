@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "accel/tracer.h"
@@ -28,8 +29,9 @@ enum class ShadeMode : std::uint8_t {
 
 struct ShadingSettings {
     ShadeMode mode = ShadeMode::lambert;
-    float ambient = 0.0F;     ///< share of light that comes from all around, occluded; [0, 1]
-    int ambient_quality = 2;  ///< of ambient occlusion, [1, 5]
+    /// Share of light that comes from all around, occluded; [0, 1]. Default: see shows_clefts.
+    std::optional<float> ambient;
+    int ambient_quality = 3;  ///< of ambient occlusion, [1, kMostAmbientQuality]
     ShadowMode shadows = ShadowMode::none;
     std::vector<LightRule> lights;  ///< empty: default_lights
     std::vector<MaterialRule> materials;

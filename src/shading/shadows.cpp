@@ -10,7 +10,8 @@ namespace ink {
 
 namespace {
 
-constexpr int kFewRays = 8;    ///< that tell whether a point may lie in the penumbra
+constexpr int kFewRays = 12;   ///< that tell whether a point may lie in the penumbra
+constexpr int kRimRays = 8;    ///< of them, along the rim of the light
 constexpr int kManyRays = 56;  ///< more of them there
 /// Of lights that have no size, in radians: that of a lamp with a shade.
 constexpr float kUsualRadius = 0.06F;
@@ -36,11 +37,20 @@ LightSource with_size(LightSource light, ShadowMode mode) {
     return light;
 }
 
+/// Point k of those looked at first: most lie on the rim, where shadows begin.
+Vec2f first_point(int k, float turn) {
+    if (k >= kRimRays) return disc_point(k - kRimRays, kFewRays - kRimRays, turn);
+    const float angle = 6.28318531F * (static_cast<float>(k) / kRimRays + turn);
+    return {0.99F * std::cos(angle), 0.99F * std::sin(angle)};
+}
+
 /// Turns `rays`, which start at the surface, towards a point of the light.
 void aim(const LightSource& light, const Lanes<float>& turns, int k, int n, RayPacket& rays,
          Lanes<float>& reach) {
     for (int i = 0; i < kLanes; ++i) {
-        const Vec2f p = light.has_size() ? disc_point(k, n, turns[i]) : Vec2f{};
+        const Vec2f p = !light.has_size() ? Vec2f{}
+                        : n == kFewRays   ? first_point(k, turns[i])
+                                          : disc_point(k, n, turns[i]);
         Vec3f to = light.from + light.side * p.x + light.up * p.y;
         if (light.is_disc) to = to - Vec3f{rays.origin_x[i], rays.origin_y[i], rays.origin_z[i]};
         const float distance = length(to);

@@ -6,6 +6,7 @@
 
 #include "lines/fit_chains.h"
 #include "lines/junctions.h"
+#include "sampling/line_ids.h"
 #include "vector/region_colors.h"
 #include "vector/regions.h"
 #include "vector/tone_lines.h"
@@ -58,9 +59,14 @@ CurveGraph curves_of(const std::vector<Segment>& segments, float spacing,
     return layer;
 }
 
+bool is_inner(const LineIds& ids, const Chain& chain) {
+    return chain.left != kBackground && chain.right != kBackground &&
+           ids.of_one_whole(chain.left, chain.right);
+}
+
 /// Moves the lines that were asked for into the drawing, with their styles.
-void add_lines(const Settings& settings, const LineThinning& thinning, CurveGraph layer,
-               LineArt& art) {
+void add_lines(const Settings& settings, const LineIds& ids, const LineThinning& thinning,
+               CurveGraph layer, LineArt& art) {
     const double shortest = settings.min_length.pixels(settings.dpi, settings.size.height);
     for (std::size_t k = 0; k < layer.graph.chains.size(); ++k) {
         Chain& chain = layer.graph.chains[k];
@@ -70,9 +76,10 @@ void add_lines(const Settings& settings, const LineThinning& thinning, CurveGrap
         if (size < least) continue;
         const GeometryId owner = front(chain) != kBackground ? front(chain) : behind(chain);
         const auto object = static_cast<int>(art.names.object_of(owner)) + 1;
-        const StrokeStyle style = chain.hidden
-                                      ? settings.hidden_style(object)
-                                      : settings.line_style(chain.type, object, chain.level);
+        const StrokeStyle style =
+            chain.hidden
+                ? settings.hidden_style(object)
+                : settings.line_style(chain.type, object, chain.level, is_inner(ids, chain));
         art.styles.push_back(style);
         art.dashes.push_back(chain.hidden
                                  ? settings.hidden_dashes(style.width_px, size, chain.closed)
@@ -114,13 +121,14 @@ LineArt make_line_art(const Scene& scene, const Settings& settings, const Drawin
     if (fill == Fill::image) art.image = image;
 
     if (!settings.draws_lines()) return art;
-    add_lines(settings, drawing.thinning, std::move(direct), art);
+    const LineIds ids(scene, settings.ids);
+    add_lines(settings, ids, drawing.thinning, std::move(direct), art);
     for (int level = 1; level < levels; ++level) {
-        add_lines(settings, drawing.thinning,
+        add_lines(settings, ids, drawing.thinning,
                   curves_of(of_level(drawing, level), drawing.spacing, settings), art);
     }
     if (drawing.hidden.empty()) return art;
-    add_lines(settings, drawing.thinning, curves_of(drawing.hidden, drawing.spacing, settings),
+    add_lines(settings, ids, drawing.thinning, curves_of(drawing.hidden, drawing.spacing, settings),
               art);
     return art;
 }

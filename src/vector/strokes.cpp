@@ -147,9 +147,12 @@ double mean(const WeighedLine& line, std::span<const float> values, std::size_t 
 
 LineWeights weigh(const Chain& chain, double width_px, const LineThinning& thinning) {
     LineWeights weights;
-    for (const Vec2f point : chain.points) {
-        weights.width.push_back(static_cast<float>(width_px) *
-                                thinning.scale_at(point, chain.level));
+    const auto scale_at = [&](std::size_t k) {
+        return chain.width_scales.empty() ? 1.0F : chain.width_scales[k];
+    };
+    for (std::size_t k = 0; k < chain.points.size(); ++k) {
+        weights.width.push_back(static_cast<float>(width_px) * scale_at(k) *
+                                thinning.scale_at(chain.points[k], chain.level));
     }
     weights.opacity = chain.strengths;
     return weights;

@@ -31,6 +31,7 @@ Line backwards(Line line) {
     std::ranges::reverse(chain.points);
     std::ranges::reverse(chain.t);
     std::ranges::reverse(chain.strengths);
+    std::ranges::reverse(chain.width_scales);
     line.curve = reversed(line.curve);
     return line;
 }
@@ -70,6 +71,7 @@ void append(Line& line, const Line& next) {
     add(line.chain.points, next.chain.points);
     add(line.chain.t, next.chain.t);
     add(line.chain.strengths, next.chain.strengths);
+    add(line.chain.width_scales, next.chain.width_scales);
     line.chain.last_vertex = next.chain.last_vertex;
     line.curve.pieces.insert(line.curve.pieces.end(), next.curve.pieces.begin(),
                              next.curve.pieces.end());
@@ -81,6 +83,7 @@ void close(Line& line) {
     line.chain.points.pop_back();
     line.chain.t.pop_back();
     line.chain.strengths.pop_back();
+    line.chain.width_scales.pop_back();
 }
 
 /// The lines of a path, one after the other in its direction.

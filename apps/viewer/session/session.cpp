@@ -21,6 +21,7 @@ std::string scene_key(const Settings& settings) {
     for (const SettingInfo& info : all_settings()) {
         if (info.topic == "Input") key += "\n" + settings.get(info.name);
     }
+    if (settings.get("look") == "goodsell") key += "\nby residue";
     return key;
 }
 

@@ -181,7 +181,7 @@ void topic(Interface& interface, const std::string& name) {
 
 /// Lines first, then as in the help.
 std::vector<std::string> topics() {
-    std::vector<std::string> names{"Lines", "Shading"};
+    std::vector<std::string> names{"Look", "Lines", "Shading"};
     for (const SettingInfo& info : all_settings()) {
         if (std::ranges::find(names, info.topic) == names.end()) names.push_back(info.topic);
     }

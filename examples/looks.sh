@@ -1,0 +1,29 @@
+#!/bin/sh
+# Draws every look on seven data sets, as in docs/looks.md. Needs ImageMagick (convert, montage).
+# looks.sh DATA OUT [PROGRAM]: DATA has the folders molecules, meshes and particles.
+set -eu
+data=$1
+out=$2
+program=${3:-build/release/bin/inktrace}
+samples=$(dirname "$0")/../samples
+mkdir -p "$out"
+
+draw() { # NAME FILE FLAGS...: in every look
+    name=$1
+    file=$2
+    shift 2
+    for look in plain soft toon goodsell technical ink blueprint; do
+        "$program" render "$file" --look $look --size 720x720 --quiet -o "$out/$name-$look.png" "$@"
+    done
+}
+
+draw 1-molecule "$samples/acetaminophen.xyz" --line-width 5px
+draw 2-protein "$data/molecules/4hhb.pdb" --color-by chain --select 'not water'
+draw 3-ribosome "$data/molecules/1ffk_ribosome50S.cif.gz" --color-by chain --line-width 1.5px
+draw 4-fandisk "$data/meshes/fandisk.obj" --material color=#c9b48a
+draw 5-engine "$data/meshes/2CylinderEngine.glb"
+draw 6-bar "$data/particles/mpm_karamelo_taylorbar3d_step1200.lammpstrj.gz" --color-by seq --line-width 1.5px
+draw 7-grains "$data/particles/dem_pile10192.vtu" --color-by radius --line-width 1.5px
+
+montage "$out"/[1-7]-*.png -resize 260x260 -tile 7x7 -geometry 232x232+3+3 "$out/looks.png"
+convert "$out/looks.png" -resize 1190x1190 +dither -colors 200 "PNG8:$out/looks.png"

@@ -1,0 +1,373 @@
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <bit>
+#include <cmath>
+#include <optional>
+#include <variant>
+#include <vector>
+
+#include "shading/ambient.h"
+#include "shading/ball_sky.h"
+#include "shading/node_map.h"
+#include "shading/ray_sky.h"
+#include "shading/secondary_rays.h"
+#include "shading/sky_directions.h"
+
+namespace ink {
+
+namespace {
+
+/// Nodes along the side of a sphere's grid, which is an octahedron unfolded to a square.
+constexpr std::size_t kBallGrids = 6;
+constexpr int ball_side(std::size_t grid) { return 6 << grid; }
+/// Nodes that a sphere needs which the picture shows with this radius. What is kept at them varies
+/// slowly over the sphere, so they may be the farther apart the larger it is: on spheres of 8
+/// pixels 2.4, of 100 pixels 7.
+float ball_nodes(float radius_px) { return 3.4F * std::sqrt(radius_px); }
+
+/// Along the sides of a triangle.
+constexpr std::size_t kTriangleGrids = 8;
+constexpr int triangle_side(std::size_t grid) { return 1 << grid; }
+constexpr float kTriangleSpacing = 4.0F;  ///< pixels between nodes, at most
+
+/// The first grid of at least so many nodes.
+template <class Side>
+std::size_t grid_for(float nodes, std::size_t grids, const Side& side) {
+    std::size_t grid = 0;
+    while (grid + 1 < grids && static_cast<float>(side(grid)) < nodes) ++grid;
+    return grid;
+}
+
+/// A unit vector to a point of [-1, 1]^2: the octahedral map, as in scene/mesh.h.
+Vec2f unfold(Vec3f n) {
+    const float scale = 1.0F / (std::abs(n.x) + std::abs(n.y) + std::abs(n.z));
+    const Vec2f p{n.x * scale, n.y * scale};
+    if (n.z >= 0.0F) return p;
+    return {std::copysign(1.0F - std::abs(p.y), p.x), std::copysign(1.0F - std::abs(p.x), p.y)};
+}
+
+Vec3f fold(Vec2f p) {
+    const float z = 1.0F - std::abs(p.x) - std::abs(p.y);
+    const float under = std::max(-z, 0.0F);
+    return normalize(Vec3f{p.x - std::copysign(under, p.x), p.y - std::copysign(under, p.y), z});
+}
+
+/// A triangle's corners and the normals there, which face the side that is seen.
+struct Corners {
+    std::array<Vec3f, 3> points, normals;
+    bool from_behind;
+    bool smooth;
+
+    Vec3f point(float u, float v) const {
+        return points[0] * (1.0F - u - v) + points[1] * u + points[2] * v;
+    }
+    Vec3f normal(float u, float v) const {
+        return normalize(normals[0] * (1.0F - u - v) + normals[1] * u + normals[2] * v);
+    }
+    float longest() const {
+        return std::max({length(points[1] - points[0]), length(points[2] - points[1]),
+                         length(points[0] - points[2])});
+    }
+    float area() const {
+        return 0.5F * length(cross(points[1] - points[0], points[2] - points[0]));
+    }
+};
+
+Corners corners_of(const Mesh& mesh, std::uint32_t triangle, Vec3f seen_normal) {
+    Corners corners{};
+    for (std::size_t k = 0; k < 3; ++k) {
+        corners.points[k] = mesh.vertices[mesh.triangles[triangle][k]];
+    }
+    const Vec3f across =
+        cross(corners.points[1] - corners.points[0], corners.points[2] - corners.points[0]);
+    corners.from_behind = dot(across, seen_normal) < 0.0F;
+    const Vec3f facet = corners.from_behind ? -across : across;
+    const float size = length(facet);
+    corners.normals.fill(size > 0.0F ? facet * (1.0F / size) : seen_normal);
+    corners.smooth = !mesh.corner_normals.empty();
+    for (std::size_t k = 0; corners.smooth && k < 3; ++k) {
+        const Vec3f n = unpack_normal(mesh.corner_normals[triangle][k]);
+        corners.normals[k] = dot(n, facet) < 0.0F ? -n : n;
+    }
+    // Opposite normals cancel somewhere between them.
+    const auto& n = corners.normals;
+    const bool opposed = std::min({dot(n[0], n[1]), dot(n[1], n[2]), dot(n[2], n[0])}) < -0.5F;
+    if (opposed && size > 0.0F) corners.normals.fill(facet * (1.0F / size));
+    return corners;
+}
+
+/// Surroundings of the balls that a thread asked about last: a picture comes back to a ball many
+/// times before it is done with it.
+struct RecentSurroundings {
+    static constexpr std::size_t kEntries = 256;
+    struct Entry {
+        std::uint64_t bake = 0;
+        std::size_t ball = 0;
+        Surroundings surroundings;
+    };
+    std::vector<Entry> entries{kEntries};
+};
+
+std::uint64_t next_number() {
+    static std::atomic<std::uint64_t> number{0};
+    return ++number;
+}
+
+}  // namespace
+
+struct AmbientBake::Impl {
+    Impl(const Scene& all, const Tracer& scene_tracer, int quality)
+        : scene(all), directions(4 << (quality - 1)), rays(scene_tracer, 8 << quality) {
+        std::size_t ball_count = 0;
+        std::size_t triangles = 0;
+        std::size_t corners = 0;
+        bool balls_only = true;
+        for (const Object& object : scene.objects()) {
+            first_ball.push_back(ball_count);
+            first_triangle.push_back(triangles);
+            first_vertex.push_back(corners);
+            if (const auto* spheres = std::get_if<Spheres>(&object.shape)) {
+                ball_count += spheres->spheres.size();
+            } else {
+                balls_only = false;
+            }
+            if (const auto* mesh = std::get_if<Mesh>(&object.shape)) {
+                triangles += mesh->triangles.size();
+                corners += mesh->vertices.size();
+            }
+        }
+        if (balls_only) ball_sky.emplace(scene, directions);
+        balls = LazyTable<BallBake>(ball_count);
+        triangle_maps = LazyTable<NodeMaps<2 * kTriangleGrids>>(triangles);
+        vertices = std::make_unique<std::atomic<std::uint64_t>[]>(corners);
+    }
+
+    /// Of a ball: openness over that of its contacts alone, both raised by kRaise.
+    struct BallBake {
+        NodeMaps<kBallGrids> maps;
+        BallPacket contacts{};
+    };
+    static constexpr float kRaise = 0.1F;  ///< keeps quotients small where both are
+    const Surroundings& surroundings(const Sphere& ball, std::size_t ball_number) const;
+    BallBake& bake_of(const Sphere& ball, std::size_t ball_number) const;
+    float on_ball(std::uint32_t object, std::uint32_t primitive, Vec3f n, float radius_px) const;
+    float on_triangle(const HitPacket& hits, int lane, const Corners& corners,
+                      float footprint) const;
+    float at_vertex(std::uint32_t object, const Mesh& mesh, const Corners& corners,
+                    std::uint32_t triangle, std::size_t corner) const;
+
+    const Scene& scene;
+    SkyDirections directions;
+    RaySky rays;
+    std::optional<BallSky> ball_sky;  ///< unless there is anything but balls
+    std::vector<std::size_t> first_ball, first_triangle, first_vertex;  ///< of each object
+    LazyTable<BallBake> balls;
+    LazyTable<NodeMaps<2 * kTriangleGrids>> triangle_maps;  ///< of either side
+    /// Of vertices with smooth normals: the packed normal and the openness that goes with it.
+    std::unique_ptr<std::atomic<std::uint64_t>[]> vertices;
+    std::uint64_t number = next_number();
+};
+
+const Surroundings& AmbientBake::Impl::surroundings(const Sphere& ball,
+                                                    std::size_t ball_number) const {
+    thread_local RecentSurroundings recent;
+    auto& entry = recent.entries[ball_number % RecentSurroundings::kEntries];
+    if (entry.bake != number || entry.ball != ball_number) {
+        ball_sky->survey(ball, entry.surroundings);
+        entry.bake = number;
+        entry.ball = ball_number;
+    }
+    return entry.surroundings;
+}
+
+AmbientBake::Impl::BallBake& AmbientBake::Impl::bake_of(const Sphere& ball,
+                                                        std::size_t ball_number) const {
+    return balls.at(ball_number, [&] {
+        auto fresh = std::make_unique<BallBake>();
+        if (ball_sky) fresh->contacts = surroundings(ball, ball_number).contacts;
+        return fresh;
+    });
+}
+
+float AmbientBake::Impl::on_ball(std::uint32_t object, std::uint32_t primitive, Vec3f n,
+                                 float radius_px) const {
+    const Sphere& ball = std::get<Spheres>(scene.objects()[object].shape).spheres[primitive];
+    const std::size_t ball_number = first_ball[object] + primitive;
+    const std::size_t level = grid_for(ball_nodes(radius_px), kBallGrids, ball_side);
+    const int side = ball_side(level);
+    const auto nodes = static_cast<std::size_t>((side + 1) * (side + 1));
+    BallBake& bake = bake_of(ball, ball_number);
+    const auto grid = bake.maps.grid(level, nodes);
+    const Vec2f place = unfold(n);
+    const auto half = 0.5F * static_cast<float>(side);
+    const float x = (place.x + 1.0F) * half;
+    const float y = (place.y + 1.0F) * half;
+    const int i = std::clamp(static_cast<int>(x), 0, side - 1);
+    const int j = std::clamp(static_cast<int>(y), 0, side - 1);
+    const auto at_contacts = [&](Vec3f at) {
+        return BallSky::contact_openness(bake.contacts, ball.radius, at) + kRaise;
+    };
+    const auto value = [&](int column, int row) {
+        return grid.value(static_cast<std::size_t>(row * (side + 1) + column), [&] {
+            const Vec3f at = fold(
+                {static_cast<float>(column) / half - 1.0F, static_cast<float>(row) / half - 1.0F});
+            if (!ball_sky) return rays.openness(ball.centre + at * ball.radius, at);
+            const float open = ball_sky->openness(ball, surroundings(ball, ball_number), at);
+            return (open + kRaise) / at_contacts(at);
+        });
+    };
+    const float a = x - static_cast<float>(i);
+    const float b = y - static_cast<float>(j);
+    const float top = value(i, j) + a * (value(i + 1, j) - value(i, j));
+    const float bottom = value(i, j + 1) + a * (value(i + 1, j + 1) - value(i, j + 1));
+    const float mean = top + b * (bottom - top);
+    if (!ball_sky) return mean;
+    return std::clamp(mean * at_contacts(n) - kRaise, 0.0F, 1.0F);
+}
+
+/// Where many triangles share a vertex and its normal, so do they its openness.
+float AmbientBake::Impl::at_vertex(std::uint32_t object, const Mesh& mesh, const Corners& corners,
+                                   std::uint32_t triangle, std::size_t corner) const {
+    const Vec3f n = corners.normals[corner];
+    const auto compute = [&] { return rays.openness(corners.points[corner], n); };
+    if (!corners.smooth) return compute();
+    constexpr float kSteps = 65535.0F;
+    std::atomic<std::uint64_t>& kept =
+        vertices[first_vertex[object] + mesh.triangles[triangle][corner]];
+    const std::uint64_t key = std::uint64_t{pack_normal(n)} << 32U | 1U << 16U;
+    std::uint64_t entry = kept.load(std::memory_order_relaxed);
+    if ((entry & ~std::uint64_t{0xFFFF}) != key) {
+        entry = key | static_cast<std::uint64_t>(compute() * kSteps + 0.5F);
+        kept.store(entry, std::memory_order_relaxed);
+    }
+    return static_cast<float>(entry & 0xFFFFU) * (1.0F / kSteps);
+}
+
+float AmbientBake::Impl::on_triangle(const HitPacket& hits, int lane, const Corners& corners,
+                                     float footprint) const {
+    const std::uint32_t object = hits.object[lane];
+    const std::uint32_t triangle = hits.primitive[lane];
+    const float u = hits.u[lane];
+    const float v = hits.v[lane];
+    const float nodes_needed = corners.longest() / (footprint * kTriangleSpacing);
+    const std::size_t level = grid_for(nodes_needed, kTriangleGrids, triangle_side);
+    const int side = triangle_side(level);
+    const float pixels = corners.area() / (footprint * footprint);
+    // A sliver has more nodes than pixels.
+    if (0.5F * static_cast<float>(side * side) > 4.0F + pixels) {
+        return rays.openness(corners.point(u, v), corners.normal(u, v));
+    }
+    if (side == 1) {
+        const auto& mesh = std::get<Mesh>(scene.objects()[object].shape);
+        const auto at = [&](std::size_t k) {
+            return at_vertex(object, mesh, corners, triangle, k);
+        };
+        return (1.0F - u - v) * at(0) + u * at(1) + v * at(2);
+    }
+    const auto nodes = static_cast<std::size_t>((side + 1) * (side + 1));
+    const auto grid = triangle_maps
+                          .at(first_triangle[object] + triangle,
+                              [] { return std::make_unique<NodeMaps<2 * kTriangleGrids>>(); })
+                          .grid(level + (corners.from_behind ? kTriangleGrids : 0), nodes);
+    const auto value = [&](int i, int j) {
+        return grid.value(static_cast<std::size_t>(j * (side + 1) + i), [&] {
+            const float to_u = static_cast<float>(i) / static_cast<float>(side);
+            const float to_v = static_cast<float>(j) / static_cast<float>(side);
+            return rays.openness(corners.point(to_u, to_v), corners.normal(to_u, to_v));
+        });
+    };
+    const float x = std::clamp(u, 0.0F, 1.0F) * static_cast<float>(side);
+    const float y = std::clamp(v, 0.0F, 1.0F) * static_cast<float>(side);
+    const int i = std::min(static_cast<int>(x), side - 1);
+    const int j = std::min(static_cast<int>(y), side - 1 - i);
+    const float a = x - static_cast<float>(i);
+    const float b = y - static_cast<float>(j);
+    if (a + b <= 1.0F || i + j + 2 > side) {
+        return value(i, j) + a * (value(i + 1, j) - value(i, j)) +
+               b * (value(i, j + 1) - value(i, j));
+    }
+    const float far = value(i + 1, j + 1);
+    return far + (1.0F - a) * (value(i, j + 1) - far) + (1.0F - b) * (value(i + 1, j) - far);
+}
+
+namespace {
+
+/// What pixels of a picture cover of a scene.
+class Footprints {
+  public:
+    explicit Footprints(const Camera& camera)
+        : eye_(camera.eye()), back_(camera.back()), parallel_(camera.orthographic()) {
+        const Camera::RayField& field = camera.ray_field();
+        pixel_ = length(parallel_ ? field.origin_dx : field.dir_dx);
+    }
+    /// Distance between rays of neighbouring pixels at a point, scene units.
+    float at(Vec3f p) const {
+        if (parallel_) return pixel_;
+        return pixel_ * std::max(dot(eye_ - p, back_), 1e-6F);
+    }
+
+  private:
+    Vec3f eye_, back_;
+    bool parallel_;
+    float pixel_;
+};
+
+class SeenBake final : public AmbientOcclusion {
+  public:
+    SeenBake(const AmbientBake::Impl& bake, const Camera& camera)
+        : bake_(bake), footprints_(camera) {}
+
+    void openness(const SurfacePacket& surface, Lanes<float>& open) const override {
+        for (int i = 0; i < kLanes; ++i) {
+            open[i] = surface.hits.object[i] == kNoObject ? 1.0F : at(surface, i);
+        }
+    }
+
+  private:
+    float at(const SurfacePacket& surface, int i) const {
+        const HitPacket& hits = surface.hits;
+        const Shape& shape = bake_.scene.objects()[hits.object[i]].shape;
+        const Vec3f normal{surface.normals.x[i], surface.normals.y[i], surface.normals.z[i]};
+        if (const auto* spheres = std::get_if<Spheres>(&shape)) {
+            const Sphere& ball = spheres->spheres[hits.primitive[i]];
+            const float radius_px = ball.radius / footprints_.at(ball.centre);
+            return bake_.on_ball(hits.object[i], hits.primitive[i], normal, radius_px);
+        }
+        if (const auto* mesh = std::get_if<Mesh>(&shape)) {
+            const Corners corners = corners_of(*mesh, hits.primitive[i], normal);
+            return bake_.on_triangle(hits, i, corners,
+                                     footprints_.at(corners.point(0.3333F, 0.3333F)));
+        }
+        const Vec3f p{surface.rays.origin_x[i] + hits.t[i] * surface.rays.dir_x[i],
+                      surface.rays.origin_y[i] + hits.t[i] * surface.rays.dir_y[i],
+                      surface.rays.origin_z[i] + hits.t[i] * surface.rays.dir_z[i]};
+        return bake_.rays.openness(p, normal,
+                                   screen_noise(surface.points.x[i], surface.points.y[i]));
+    }
+
+    const AmbientBake::Impl& bake_;
+    Footprints footprints_;
+};
+
+}  // namespace
+
+AmbientBake::AmbientBake(const Scene& scene, const Tracer& tracer, int quality)
+    : impl_(std::make_unique<Impl>(scene, tracer, quality)) {}
+AmbientBake::~AmbientBake() = default;
+
+std::unique_ptr<AmbientOcclusion> AmbientBake::seen_by(const Camera& camera) const {
+    return std::make_unique<SeenBake>(*impl_, camera);
+}
+
+std::shared_ptr<const AmbientBake> AmbientCache::get(const Scene& scene, const Tracer& tracer,
+                                                     int quality) {
+    const std::scoped_lock lock(mutex_);
+    if (!bake_ || quality_ != quality) {
+        bake_ = std::make_shared<AmbientBake>(scene, tracer, quality);
+        quality_ = quality;
+    }
+    return bake_;
+}
+
+}  // namespace ink

@@ -1,0 +1,59 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "base/lanes.h"
+#include "base/vec.h"
+#include "scene/scene.h"
+#include "shading/far_sky.h"
+#include "shading/sky_directions.h"
+
+namespace ink {
+
+/// Sixteen balls, relative to some point.
+struct BallPacket {
+    Lanes<float> x, y, z, radius;
+};
+
+/// The balls near to one.
+struct Surroundings {
+    std::vector<BallPacket> near;  ///< relative to its centre; unused lanes have radius 0
+    std::size_t near_count = 0;
+    BallPacket contacts;  ///< those that touch it or nearly do, as far as there is room
+};
+
+/// The spheres of a scene as what hides the sky from each other.
+///
+/// Near balls are looked at from each point of the surface, as discs on the sky in closed form,
+/// with edges as soft as directions are apart. What begins farther away is looked up in maps.
+class BallSky {
+  public:
+    BallSky(const Scene& scene, const SkyDirections& directions);
+
+    /// What there is about a ball.
+    void survey(const Sphere& ball, Surroundings& surroundings) const;
+    /// The share of the sky that lies open above the point of the ball with normal `n`, weighted by
+    /// the cosine to it.
+    float openness(const Sphere& ball, const Surroundings& surroundings, Vec3f n) const;
+    /// The product of what each of the contacts alone would leave open: it has the steep fall of
+    /// openness towards them, so that what remains varies slowly.
+    static float contact_openness(const BallPacket& contacts, float radius, Vec3f n);
+
+  private:
+    void gather(const Sphere& ball, std::size_t level, std::size_t packet,
+                Surroundings& surroundings) const;
+
+    /// Distance from a ball's centre up to which others are near.
+    float reach_of(const Sphere& ball) const;
+
+    const SkyDirections& directions_;
+    float usual_radius_ = 0.0F;      ///< mean over all balls
+    std::vector<BallPacket> balls_;  ///< clusters of the scene's; unused lanes have no radius
+    /// Balls about clusters, sixteen a packet, and above them levels of balls about a packet of the
+    /// level below each. The last level is a single packet.
+    std::vector<std::vector<BallPacket>> levels_;
+    FarSky far_;
+};
+
+}  // namespace ink

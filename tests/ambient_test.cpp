@@ -1,0 +1,231 @@
+// Ambient occlusion: how far surfaces lie open to the sky, against closed forms and rays.
+
+#include "shading/ambient.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <random>
+#include <vector>
+
+#include "drawing.h"
+#include "io/reader.h"
+#include "paths.h"
+#include "render/render.h"
+#include "sampling/sampler.h"
+#include "scenes.h"
+#include "shading/ray_sky.h"
+
+namespace ink::test {
+namespace {
+
+Settings seen_from_front(int side) {
+    Settings settings;
+    settings.size = {side, side};
+    settings.view.view = View::front;
+    settings.threads = 1;
+    return settings;
+}
+
+struct Seen {
+    Vec3f point, normal;
+    float open;
+};
+
+/// What a picture of `side` pixels finds, at one of so many of its pixels.
+std::vector<Seen> look_at(const Scene& scene, const Tracer& tracer, const AmbientBake& bake,
+                          int side, unsigned one_of) {
+    const Settings settings = seen_from_front(side);
+    const Camera camera(scene, settings.view, settings.size);
+    const auto frame = tracer.frame(camera.projection(), 1);
+    const auto ambient = bake.seen_by(camera);
+    Sampler sampler(*frame, camera);
+    std::mt19937 random(7);
+    std::vector<Seen> seen;
+    std::vector<HitPacket> hits(1);
+    for (int y = 0; y < side; y += kBlockSide) {
+        for (int x = 0; x < side; x += kBlockSide) {
+            sampler.trace_blocks(std::vector{Block{x, y}}, {}, hits);
+            const NormalPacket normals{hits[0].normal_x, hits[0].normal_y, hits[0].normal_z};
+            const RayPacket& rays = sampler.packets()[0];
+            Lanes<float> open;
+            ambient->openness({rays, sampler.points()[0], hits[0], normals}, open);
+            for (int i = 0; i < kLanes; ++i) {
+                if (hits[0].object[i] == kNoObject || random() % one_of != 0) continue;
+                const float t = hits[0].t[i];
+                seen.push_back(
+                    {{rays.origin_x[i] + t * rays.dir_x[i], rays.origin_y[i] + t * rays.dir_y[i],
+                      rays.origin_z[i] + t * rays.dir_z[i]},
+                     {normals.x[i], normals.y[i], normals.z[i]},
+                     open[i]});
+            }
+        }
+    }
+    return seen;
+}
+
+/// Root of the mean square of the difference from 4096 rays.
+double error(const Scene& scene, int side, unsigned one_of, int quality) {
+    const auto tracer = make_tracer(scene);
+    const AmbientBake bake(scene, *tracer, quality);
+    const RaySky truth(*tracer, 4096);
+    double sum = 0.0;
+    const std::vector<Seen> seen = look_at(scene, *tracer, bake, side, one_of);
+    for (const Seen& at : seen) {
+        const double difference = at.open - truth.openness(at.point, at.normal);
+        sum += difference * difference;
+    }
+    EXPECT_GT(seen.size(), 200U);
+    return std::sqrt(sum / static_cast<double>(seen.size()));
+}
+
+TEST(AmbientOcclusion, OfAMoleculeIsWithinOneHundredthOfThatByRays) {
+    const std::filesystem::path file = source_dir() / "samples" / "acetaminophen.xyz";
+    const Scene scene(read_file(file).objects);
+    EXPECT_LT(error(scene, 512, 150, 3), 0.01);
+    EXPECT_LT(error(scene, 128, 15, 3), 0.01);
+}
+
+TEST(AmbientOcclusion, OfAProteinIsWithinOneHundredthOfThatByRays) {
+    const std::filesystem::path file = data_dir() / "molecules" / "4hhb.pdb";
+    if (!std::filesystem::exists(file)) GTEST_SKIP() << "no " << file;
+    const Scene scene(read_file(file).objects);
+    EXPECT_LT(error(scene, 1024, 600, 3), 0.0105);
+    EXPECT_LT(error(scene, 1024, 600, 4), 0.008);
+}
+
+TEST(AmbientOcclusion, GetsBetterWithQuality) {
+    std::mt19937 random(3);
+    std::vector<Sphere> balls;
+    for (int i = 0; i < 400; ++i) {
+        balls.push_back({uniform_point(random), 0.02F + 0.08F * uniform(random)});
+    }
+    const Scene scene({sphere_object(std::move(balls))});
+    const double low = error(scene, 256, 40, 1);
+    const double high = error(scene, 256, 40, 5);
+    EXPECT_LT(high, 0.6 * low);
+    EXPECT_LT(high, 0.02);
+}
+
+TEST(AmbientOcclusion, OfOneBallIsNone) {
+    const Scene scene({sphere_object({{{0, 0, 0}, 1}})});
+    const auto tracer = make_tracer(scene);
+    const AmbientBake bake(scene, *tracer, 3);
+    for (const Seen& at : look_at(scene, *tracer, bake, 64, 1)) ASSERT_GT(at.open, 0.999F);
+}
+
+/// A ball of radius R at distance d from a point hides (R / d)^2 cos of its sky, as long as it is
+/// wholly above the horizon.
+TEST(AmbientOcclusion, OfAFarBallIsItsFormFactor) {
+    const Scene scene({sphere_object({{{0, 0, 0}, 1}, {{0, 0, 6}, 2}})});
+    const auto tracer = make_tracer(scene);
+    const AmbientBake bake(scene, *tracer, 5);
+    Settings settings = seen_from_front(64);
+    settings.view.view = View::right;
+    const Camera camera(scene, settings.view, settings.size);
+    const auto ambient = bake.seen_by(camera);
+    const Frame& frame = scene.frame();
+    const Vec3f centre = frame.from_world({0, 0, 0});
+    const auto radius = static_cast<float>(1.0 / frame.unit);
+    for (const double tilt : {0.0, 0.3, 0.6, 0.9}) {
+        const Vec3f n{static_cast<float>(std::sin(tilt)), 0.0F, static_cast<float>(std::cos(tilt))};
+        const Vec3d to = Vec3d{0, 0, 6} - to_double(n);
+        const double d = length(to);
+        const double expected = 1.0 - 4.0 / (d * d) * dot(to, to_double(n)) / d;
+        RayPacket rays{};
+        PointPacket points{};
+        HitPacket hits = HitPacket::miss();
+        NormalPacket normals{};
+        const Vec3f p = centre + n * radius;
+        for (int i = 0; i < kLanes; ++i) {
+            rays.origin_x[i] = p.x + n.x;
+            rays.origin_y[i] = p.y + n.y;
+            rays.origin_z[i] = p.z + n.z;
+            rays.dir_x[i] = -n.x;
+            rays.dir_y[i] = -n.y;
+            rays.dir_z[i] = -n.z;
+            normals.x[i] = n.x;
+            normals.y[i] = n.y;
+            normals.z[i] = n.z;
+            hits.t[i] = 1.0F;
+            hits.object[i] = 0;
+            hits.primitive[i] = 0;
+        }
+        Lanes<float> open;
+        ambient->openness({rays, points, hits, normals}, open);
+        EXPECT_NEAR(open[0], expected, 0.01) << tilt;
+    }
+}
+
+/// A floor of triangles below a ball, by rays at the nodes of the floor's grid.
+TEST(AmbientOcclusion, OfAMeshIsNearThatByRays) {
+    Object floor =
+        mesh_object({{-4, -1, -4}, {4, -1, -4}, {4, -1, 4}, {-4, -1, 4}}, {{0, 2, 1}, {0, 3, 2}});
+    const Scene scene({std::move(floor), sphere_object({{{0, 0, 0}, 1}})});
+    const auto tracer = make_tracer(scene);
+    const AmbientBake bake(scene, *tracer, 4);
+    const RaySky truth(*tracer, 4096);
+    Settings settings = seen_from_front(256);
+    double sum = 0.0;
+    const std::vector<Seen> seen = look_at(scene, *tracer, bake, 256, 60);
+    for (const Seen& at : seen) {
+        const double difference = at.open - truth.openness(at.point, at.normal);
+        sum += difference * difference;
+    }
+    EXPECT_LT(std::sqrt(sum / static_cast<double>(seen.size())), 0.02);
+}
+
+TEST(AmbientOcclusion, IsTheSameWhateverTheThreadsTilesAndWhatWasSeenBefore) {
+    std::mt19937 random(5);
+    std::vector<Sphere> balls;
+    for (int i = 0; i < 300; ++i) {
+        balls.push_back({uniform_point(random), 0.03F + 0.06F * uniform(random)});
+    }
+    for (const bool with_mesh : {false, true}) {
+        std::vector<Object> objects{sphere_object(balls)};
+        if (with_mesh) {
+            objects.push_back(
+                mesh_object({{-1, -1, 0.5F}, {2, -1, 0.5F}, {0.5F, 2, 0.5F}}, {{0, 1, 2}}));
+        }
+        const Scene scene(std::move(objects));
+        const auto tracer = make_tracer(scene);
+        Settings settings = seen_from_front(96);
+        settings.shading.ambient = 1.0F;
+        settings.tile = 64;
+        const auto pixels = [&](AmbientCache* kept) {
+            RenderControl control;
+            control.ambient = kept;
+            return render(scene, *tracer, settings, {}, control).display().pixels;
+        };
+        const auto expected = pixels(nullptr);
+        settings.threads = 3;
+        settings.tile = 16;
+        EXPECT_EQ(pixels(nullptr), expected);
+        AmbientCache kept;
+        settings.view.view = View::iso;
+        pixels(&kept);
+        settings.view.view = View::front;
+        EXPECT_EQ(pixels(&kept), expected);
+        EXPECT_EQ(pixels(&kept), expected);
+    }
+}
+
+TEST(AmbientOcclusion, IsTheDefaultOfParticlesAndNotOfMeshes) {
+    const auto same = [](const std::vector<Object>& objects, std::string_view value) {
+        const Scene scene(objects);
+        const Settings settings = seen_from_front(64);
+        Settings changed = settings;
+        find_setting("ambient").set(changed, value);
+        return draw(scene, settings).display().pixels == draw(scene, changed).display().pixels;
+    };
+    const std::vector<Object> balls{sphere_object({{{0, 0, 0}, 1}, {{1.5F, 0, 0.5F}, 1}})};
+    EXPECT_TRUE(same(balls, "1"));
+    EXPECT_FALSE(same(balls, "0"));
+    const std::vector<Object> mesh{
+        mesh_object({{0, 0, 0}, {1, 0, 0}, {1, 1, 1}, {0, 1, 1}}, {{0, 1, 2}, {0, 2, 3}})};
+    EXPECT_TRUE(same(mesh, "0"));
+}
+
+}  // namespace
+}  // namespace ink::test
