@@ -25,10 +25,12 @@ struct BareLoop::Impl {
 
 namespace {
 
+/// Copies are written out: the loop is to be as plain as can be.
 RTCGeometry make_geometry(RTCDevice device, const Spheres& shape) {
     RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_SPHERE_POINT);
-    rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4,
-                               shape.spheres.data(), 0, sizeof(Sphere), shape.spheres.size());
+    auto* spheres = static_cast<Sphere*>(rtcSetNewGeometryBuffer(
+        geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4, sizeof(Sphere), shape.count()));
+    for (std::size_t k = 0; k < shape.count(); ++k) spheres[k] = shape.at(k);
     return geometry;
 }
 

@@ -211,6 +211,33 @@ TEST(AmbientOcclusion, IsTheSameWhateverTheThreadsTilesAndWhatWasSeenBefore) {
     }
 }
 
+TEST(AmbientOcclusion, AndLinesOfCopiesAreThoseOfSpheresWrittenOut) {
+    std::vector<Object> copied = random_copies(3, 60, 0);
+    copied.pop_back();
+    const auto& shape = std::get<Spheres>(copied[0].shape);
+    std::vector<Sphere> all;
+    for (std::size_t k = 0; k < shape.count(); ++k) all.push_back(shape.at(k));
+    Object written_out = copied[0];
+    written_out.shape = Spheres{.spheres = std::move(all), .colors = {}, .parts = {}};
+    const auto pixels = [](const Object& object) {
+        const Scene scene({object});
+        Settings settings = seen_from_front(128);
+        settings.shading.ambient = 1.0F;
+        return render(scene, *make_tracer(scene), settings).display().pixels;
+    };
+    const auto seen = pixels(copied[0]);
+    const auto expected = pixels(written_out);
+    std::size_t differing = 0;
+    for (std::size_t k = 0; k < seen.size(); ++k) {
+        for (unsigned shift = 0; shift < 32; shift += 8) {
+            const int difference = static_cast<int>(seen[k] >> shift & 255U) -
+                                   static_cast<int>(expected[k] >> shift & 255U);
+            differing += std::abs(difference) > 3 ? 1 : 0;
+        }
+    }
+    EXPECT_LE(differing, seen.size() / 500);  // centres differ in their last digit
+}
+
 TEST(AmbientOcclusion, IsTheDefaultOfParticlesAndNotOfMeshes) {
     const auto same = [](const std::vector<Object>& objects, std::string_view value) {
         const Scene scene(objects);

@@ -113,8 +113,7 @@ bool smooth_glyph(const UnitShape& shape, const Placement& placement, Vec3f norm
 
 Surfaces::Surfaces(const Scene& scene, NormalSource normals) : scene_(scene), normals_(normals) {
     for (const Object& object : scene.objects()) {
-        const auto* spheres = std::get_if<Spheres>(&object.shape);
-        spheres_.push_back(spheres == nullptr ? nullptr : &spheres->spheres);
+        spheres_.push_back(std::get_if<Spheres>(&object.shape));
     }
 }
 

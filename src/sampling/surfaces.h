@@ -24,7 +24,7 @@ class Surfaces {
     Ball ball(std::uint32_t object, std::uint32_t primitive) const {
         const auto* spheres = spheres_[object];
         if (spheres == nullptr) return {};
-        const Sphere& sphere = (*spheres)[primitive];
+        const Sphere sphere = spheres->at(primitive);
         return {sphere.centre, sphere.radius};
     }
 
@@ -54,7 +54,7 @@ class Surfaces {
 
     const Scene& scene_;
     NormalSource normals_;
-    std::vector<const std::vector<Sphere>*> spheres_;  ///< of each object; null: other shapes
+    std::vector<const Spheres*> spheres_;  ///< of each object; null: other shapes
 };
 
 }  // namespace ink

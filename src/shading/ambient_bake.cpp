@@ -128,7 +128,7 @@ struct AmbientBake::Impl {
             first_triangle.push_back(triangles);
             first_vertex.push_back(corners);
             if (const auto* spheres = std::get_if<Spheres>(&object.shape)) {
-                ball_count += spheres->spheres.size();
+                ball_count += spheres->count();
             } else {
                 balls_only = false;
             }
@@ -192,7 +192,7 @@ AmbientBake::Impl::BallBake& AmbientBake::Impl::bake_of(const Sphere& ball,
 
 float AmbientBake::Impl::on_ball(std::uint32_t object, std::uint32_t primitive, Vec3f n,
                                  float radius_px) const {
-    const Sphere& ball = std::get<Spheres>(scene.objects()[object].shape).spheres[primitive];
+    const Sphere ball = std::get<Spheres>(scene.objects()[object].shape).at(primitive);
     const std::size_t ball_number = first_ball[object] + primitive;
     const std::size_t level = grid_for(ball_nodes(radius_px), kBallGrids, ball_side);
     const int side = ball_side(level);
@@ -330,7 +330,7 @@ class SeenBake final : public AmbientOcclusion {
         const Shape& shape = bake_.scene.objects()[hits.object[i]].shape;
         const Vec3f normal{surface.normals.x[i], surface.normals.y[i], surface.normals.z[i]};
         if (const auto* spheres = std::get_if<Spheres>(&shape)) {
-            const Sphere& ball = spheres->spheres[hits.primitive[i]];
+            const Sphere ball = spheres->at(hits.primitive[i]);
             const float radius_px = ball.radius / footprints_.at(ball.centre);
             return bake_.on_ball(hits.object[i], hits.primitive[i], normal, radius_px);
         }

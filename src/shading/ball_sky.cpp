@@ -50,8 +50,8 @@ std::vector<Sphere> all_balls(const Scene& scene) {
     std::vector<Sphere> balls;
     for (const Object& object : scene.objects()) {
         const auto* shape = std::get_if<Spheres>(&object.shape);
-        if (shape != nullptr)
-            balls.insert(balls.end(), shape->spheres.begin(), shape->spheres.end());
+        if (shape == nullptr) continue;
+        for (std::size_t k = 0; k < shape->count(); ++k) balls.push_back(shape->at(k));
     }
     return balls;
 }
@@ -85,7 +85,9 @@ BallSky::BallSky(const Scene& scene, const SkyDirections& directions)
     std::vector<Sphere> balls;
     for (const Cluster& cluster : clusters.clusters) {
         if (cluster.kind != ClusterKind::spheres) continue;
-        const SphereLanes& lanes = clusters.spheres[cluster.packet];
+        const SphereLanes& there = clusters.spheres[cluster.packet];
+        const SphereLanes lanes =
+            cluster.copy == kNoCopy ? there : moved(there, clusters.copies[cluster.copy].motion);
         BallPacket packet{lanes.centre.x, lanes.centre.y, lanes.centre.z, lanes.radius};
         for (int i = cluster.count; i < kLanes; ++i) packet.radius[i] = kNoBall;
         balls.push_back(enclose(
