@@ -9,9 +9,9 @@ namespace ink {
 
 /// Traces camera rays without a general hierarchy. All rays of a camera fan out from one point (or
 /// run parallel), so what a primitive shows of itself is a region of the screen, known in closed
-/// form: an ellipse for a sphere, three edges for a triangle; and rays in the coordinates of a glyph
-/// are an affine function of the screen. A tile finds the clusters whose screen bounds reach it,
-/// nearest first. The blocks of a lattice are traced cluster by cluster, other points packet by
+/// form: an ellipse for a sphere, three edges for a triangle; and rays in the coordinates of a
+/// glyph are an affine function of the screen. A tile finds the clusters whose screen bounds reach
+/// it, nearest first. The blocks of a lattice are traced cluster by cluster, other points packet by
 /// packet, sixteen points by one primitive at a time, up to the first cluster behind what is found.
 ///
 /// The clusters must outlive the tracer. The projection must see all of the scene. Positions on the
