@@ -41,8 +41,8 @@ constexpr double kClusterBytes = (sizeof(Cluster) + 26.0 + 22.0) / kLanes;
 /// While clusters are made, each primitive has a key and its number.
 constexpr double kKeyBytes = 16.0 + sizeof(std::uint32_t);
 
-// Nanoseconds of one thread that building takes for a primitive; measured on ten million spheres,
-// on eight million triangles, and on a million glyphs, whose hierarchy is Embree's.
+// Nanoseconds of one thread that building takes for a primitive, roughly: to warn of minutes, not to
+// tell seconds. The hierarchy of glyphs is Embree's.
 constexpr double kSphereNs = 150.0;
 constexpr double kTriangleNs = 200.0;
 constexpr double kGlyphNs = 600.0;
