@@ -12,6 +12,12 @@
 
 #include "scene/color_scale.h"
 
+#ifdef __SANITIZE_ADDRESS__
+/// Fontconfig keeps what it has read of fonts until the program ends, which counts as leaked.
+extern "C" const char* __lsan_default_suppressions();
+extern "C" const char* __lsan_default_suppressions() { return "leak:libfontconfig"; }
+#endif
+
 namespace ink {
 
 namespace {
