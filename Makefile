@@ -6,7 +6,7 @@ SAMPLE := samples/acetaminophen.xyz
 # WERROR=ON makes warnings errors; empty leaves it to the preset.
 WERROR ?=
 
-.PHONY: all figure gallery test bench format packages build clean
+.PHONY: all figure gallery test bench install format packages build clean
 
 all: build
 
@@ -34,6 +34,11 @@ test: build
 
 bench: build
 	$(BUILD)/bin/inktrace-bench
+
+# The program, its viewer, and the library for find_package(inktrace).
+PREFIX ?= /usr/local
+install: build
+	cmake --install $(BUILD) --prefix $(PREFIX)
 
 format:
 	git ls-files '*.h' '*.cpp' | xargs clang-format -i

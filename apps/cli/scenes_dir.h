@@ -4,7 +4,8 @@
 
 namespace inktrace::cli {
 
-/// Where the scenes of the gallery are unless told; a build is run from its tree.
+/// Where the scenes of the gallery are unless told: installed with the program, or in the tree that
+/// it was built from.
 std::string scenes_dir();
 
 }  // namespace inktrace::cli
