@@ -609,7 +609,7 @@ void expect_first_wins(const std::vector<HitPacket>& packets, std::uint32_t prim
 void expect_first_wins(const Seen& seen, std::uint32_t primitives) {
     const auto points = seen.random_points(7, 2000);
     expect_first_wins(seen.trace(points), primitives);
-    for (const PacketWidth width : {PacketWidth::one, PacketWidth::eight, PacketWidth::sixteen}) {
+    for (const PacketWidth width : {PacketWidth::four, PacketWidth::eight, PacketWidth::sixteen}) {
         const auto embree = make_embree_tracer(seen.scene(), width);
         expect_first_wins(seen.trace(*embree, points, Coherence::coherent), primitives);
     }

@@ -126,7 +126,7 @@ TEST_P(EveryShape, IsHitWhereBruteForceHitsIt) {
     }
     std::vector<HitPacket> expected(rays.size());
     make_brute_force_tracer(scene)->intersect(rays, expected, Coherence::incoherent);
-    for (const PacketWidth width : {PacketWidth::one, PacketWidth::eight, PacketWidth::sixteen}) {
+    for (const PacketWidth width : {PacketWidth::four, PacketWidth::eight, PacketWidth::sixteen}) {
         std::vector<HitPacket> hits(rays.size());
         make_embree_tracer(scene, width)->intersect(rays, hits, Coherence::incoherent);
         int seen = 0;

@@ -176,7 +176,7 @@ TEST_P(EveryTracerPath, LeavesInactiveRaysAlone) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Packets, EveryTracerPath,
-                         testing::Values(PacketWidth::one, PacketWidth::eight, PacketWidth::sixteen,
+                         testing::Values(PacketWidth::four, PacketWidth::eight, PacketWidth::sixteen,
                                          PacketWidth::widest),
                          [](const auto& width) {
                              return width.param == PacketWidth::widest
@@ -197,7 +197,7 @@ TEST(TracerPaths, AgreeAmongThemselvesOnCoherentRays) {
     }
     const auto sixteen =
         trace(*make_embree_tracer(scene, PacketWidth::sixteen), rays, Coherence::coherent);
-    for (const PacketWidth width : {PacketWidth::eight, PacketWidth::one}) {
+    for (const PacketWidth width : {PacketWidth::eight, PacketWidth::four}) {
         const Agreement result =
             compare(sixteen, trace(*make_embree_tracer(scene, width), rays, Coherence::coherent));
         EXPECT_GT(result.hits, result.rays / 4);

@@ -51,10 +51,24 @@ void check(RTCDevice device) {
 
 #if RTC_VERSION_MAJOR >= 4
 using QueryContext = RTCRayQueryContext;
+using OccludedArguments = RTCOccludedArguments;
 constexpr RTCSceneFlags kFilterWithQuery = RTC_SCENE_FLAG_FILTER_FUNCTION_IN_ARGUMENTS;
+void init(OccludedArguments& args) { rtcInitOccludedArguments(&args); }
+template <class Kernel, class Packet, class Arguments>
+void call(const Kernel& kernel, const std::int32_t* active, RTCScene scene, Packet& packet,
+          Arguments& args) {
+    kernel(active, scene, &packet, &args);
+}
 #else
 using QueryContext = RTCIntersectContext;
+using OccludedArguments = RTCIntersectContext;
 constexpr RTCSceneFlags kFilterWithQuery = RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION;
+void init(OccludedArguments& args) { rtcInitIntersectContext(&args); }
+template <class Kernel, class Packet, class Arguments>
+void call(const Kernel& kernel, const std::int32_t* active, RTCScene scene, Packet& packet,
+          Arguments& args) {
+    kernel(active, scene, &args, &packet);
+}
 #endif
 
 /// Of surfaces that coincide, the one of the lower object, then of the lower primitive is seen, as
@@ -300,7 +314,7 @@ PacketWidth widest_native(RTCDevice device) {
     };
     if (native(RTC_DEVICE_PROPERTY_NATIVE_RAY16_SUPPORTED)) return PacketWidth::sixteen;
     if (native(RTC_DEVICE_PROPERTY_NATIVE_RAY8_SUPPORTED)) return PacketWidth::eight;
-    return PacketWidth::one;
+    return PacketWidth::four;  // wherever Embree runs
 }
 
 /// Sets what is alike for all rays and left alone by Embree.
@@ -427,7 +441,6 @@ class EmbreeTracer final : public Tracer {
                 return block<RTCRay8, 8>(rays, reach, blocked,
                                          [](auto&&... a) { rtcOccluded8(a...); });
             default:
-                // Four lanes are native wherever Embree runs.
                 return block<RTCRay4, 4>(rays, reach, blocked,
                                          [](auto&&... a) { rtcOccluded4(a...); });
         }
@@ -446,7 +459,10 @@ class EmbreeTracer final : public Tracer {
                 return trace<RTCRayHit8, 8>(rays, hits, coherence, all, [](auto&&... arguments) {
                     rtcIntersect8(arguments...);
                 });
-            default: return trace_single(rays, hits, coherence, all);
+            default:
+                return trace<RTCRayHit4, 4>(rays, hits, coherence, all, [](auto&&... arguments) {
+                    rtcIntersect4(arguments...);
+                });
         }
     }
 
@@ -516,24 +532,11 @@ class EmbreeTracer final : public Tracer {
     }
 #endif
 
-#if RTC_VERSION_MAJOR >= 4
-    static RTCOccludedArguments any_hit_arguments() {
-        RTCOccludedArguments args;
-        rtcInitOccludedArguments(&args);
-        return args;
-    }
-#else
-    static RTCIntersectContext any_hit_arguments() {
-        RTCIntersectContext context;
-        rtcInitIntersectContext(&context);
-        return context;
-    }
-#endif
-
     template <class Rays, int Width, class Kernel>
     void block(std::span<const RayPacket> rays, std::span<const Lanes<float>> reach,
                std::span<Lanes<std::int32_t>> blocked, const Kernel& kernel) const {
-        auto args = any_hit_arguments();
+        OccludedArguments args;
+        init(args);
         alignas(64) Rays packet{};
         prepare_rays<Width>(packet);
         for (std::size_t k = 0; k < rays.size(); ++k) {
@@ -541,11 +544,7 @@ class EmbreeTracer final : public Tracer {
                 load_rays<Width>(rays[k], first, packet);
                 std::memcpy(packet.tfar, reach[k].data() + first, sizeof(float) * Width);
                 const std::int32_t* active = rays[k].active.data() + first;
-#if RTC_VERSION_MAJOR >= 4
-                kernel(active, scene_.get(), &packet, &args);
-#else
-                kernel(active, scene_.get(), &args, &packet);
-#endif
+                call(kernel, active, scene_.get(), packet, args);
                 // Embree marks what is blocked by a distance below zero.
                 for (int i = 0; i < Width; ++i) {
                     blocked[k][first + i] = active[i] != 0 && packet.tfar[i] < 0.0F ? -1 : 0;
@@ -567,57 +566,10 @@ class EmbreeTracer final : public Tracer {
             nearest.t.fill(kInfinity);
             for (int first = 0; first < kLanes; first += Width) {
                 load<RayHit, Width>(rays[k], first, packet);
-#if RTC_VERSION_MAJOR >= 4
-                kernel(rays[k].active.data() + first, scene_.get(), &packet, &args);
-#else
-                kernel(rays[k].active.data() + first, scene_.get(), &args, &packet);
-#endif
+                call(kernel, rays[k].active.data() + first, scene_.get(), packet, args);
                 store<RayHit, Width>(packet,
                                      told_apart ? nearest.t.data() + first : packet.ray.tfar, first,
                                      instances_, hits[k]);
-            }
-        }
-    }
-
-    void trace_single(std::span<const RayPacket> rays, std::span<HitPacket> hits,
-                      Coherence coherence, SurfaceHits* all) const {
-        Query query;
-        NearestHits nearest;
-        const bool told_apart = tells_apart(coherence, all);
-        auto&& args = arguments(coherence, query, all, told_apart ? &nearest : nullptr);
-        for (std::size_t k = 0; k < rays.size(); ++k) {
-            nearest.t.fill(kInfinity);
-            for (int lane = 0; lane < kLanes; ++lane) {
-                RTCRayHit single{};
-                single.ray.org_x = rays[k].origin_x[lane];
-                single.ray.org_y = rays[k].origin_y[lane];
-                single.ray.org_z = rays[k].origin_z[lane];
-                single.ray.dir_x = rays[k].dir_x[lane];
-                single.ray.dir_y = rays[k].dir_y[lane];
-                single.ray.dir_z = rays[k].dir_z[lane];
-                single.ray.tfar = kInfinity;
-                single.ray.mask = ~0U;
-                single.ray.id = static_cast<unsigned>(lane);
-                single.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-                single.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-                if (rays[k].active[lane] != 0) {
-#if RTC_VERSION_MAJOR >= 4
-                    rtcIntersect1(scene_.get(), &single, &args);
-#else
-                    rtcIntersect1(scene_.get(), &args, &single);
-#endif
-                }
-                hits[k].t[lane] = told_apart ? nearest.t[lane] : single.ray.tfar;
-                const unsigned instance = single.hit.instID[0];
-                const Vec3f normal = instances_.normal(
-                    instance, {single.hit.Ng_x, single.hit.Ng_y, single.hit.Ng_z});
-                hits[k].normal_x[lane] = normal.x;
-                hits[k].normal_y[lane] = normal.y;
-                hits[k].normal_z[lane] = normal.z;
-                hits[k].u[lane] = single.hit.u;
-                hits[k].v[lane] = single.hit.v;
-                hits[k].primitive[lane] = instances_.primitive(instance, single.hit.primID);
-                hits[k].object[lane] = single.hit.geomID;
             }
         }
     }
@@ -632,7 +584,7 @@ class EmbreeTracer final : public Tracer {
     std::vector<SceneHandle> originals_;  ///< of the instances
     Instances instances_;
     bool any_flat_ = false;  ///< objects other than spheres
-    PacketWidth width_ = PacketWidth::one;
+    PacketWidth width_ = PacketWidth::four;
 };
 
 static_assert(RTC_INVALID_GEOMETRY_ID == kNoObject);

@@ -143,7 +143,7 @@ class Tracer {
 };
 
 /// How many rays the kernel is handed at once. `widest` picks what the machine runs natively.
-enum class PacketWidth : std::uint8_t { widest = 0, one = 1, eight = 8, sixteen = 16 };
+enum class PacketWidth : std::uint8_t { widest = 0, four = 4, eight = 8, sixteen = 16 };
 
 using ObjectFilter = std::function<bool(const Object&)>;
 
