@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
@@ -13,19 +12,9 @@
 #include "commands.h"
 #include "inktrace/inktrace.h"
 #include "messages.h"
+#include "program.h"
 
 namespace {
-
-// Exit status: 0 done, 1 bad input or failed run, 2 bad usage.
-constexpr int kBadInput = 1;
-constexpr int kBadUsage = 2;
-
-/// Ends the program as the signal would have, less half-written files.
-extern "C" void end_cleanly(int signal) {
-    inktrace::remove_unfinished_files();
-    std::signal(signal, SIG_DFL);
-    std::raise(signal);
-}
 
 std::string formats() {
     std::string text = "Reads (all of them also compressed, as .gz):";
@@ -65,7 +54,7 @@ std::string unknown_argument(const CLI::App& app) {
 int report_usage(std::string_view problem) {
     inktrace::cli::say(fmt::format(
         "inktrace: {}\nSee 'inktrace --help' and 'inktrace render --help'.\n", problem));
-    return kBadUsage;
+    return inktrace::kBadUsage;
 }
 
 int run(int argc, char** argv) {
@@ -89,11 +78,11 @@ int run(int argc, char** argv) {
         return report_usage(error.what());
     } catch (const inktrace::Error& error) {
         inktrace::cli::say(fmt::format("inktrace: {}\n", error.what()));
-        return error.kind() == inktrace::Error::Kind::usage ? kBadUsage : kBadInput;
+        return exit_status(error);
     }
     if (std::fflush(stdout) != 0) {
         inktrace::cli::say("inktrace: standard output cannot be written; check the disk\n");
-        return kBadInput;
+        return inktrace::kBadInput;
     }
     return EXIT_SUCCESS;
 }
@@ -101,16 +90,11 @@ int run(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
-    for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
-        // nohup, and shells for what they run in the background, ask to have some ignored.
-        if (std::signal(signal, end_cleanly) == SIG_IGN) std::signal(signal, SIG_IGN);
-    }
-    // A full disk quota or a closed pipe then fails the write, which says so and cleans up.
-    for (const int signal : {SIGXFSZ, SIGPIPE}) std::signal(signal, SIG_IGN);
+    inktrace::watch_signals();
     try {
         return run(argc, argv);
     } catch (const std::exception& error) {
         inktrace::cli::say(fmt::format("inktrace: {}\n", error.what()));
-        return kBadInput;
+        return inktrace::kBadInput;
     }
 }

@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
@@ -11,20 +10,12 @@
 #include <vector>
 
 #include "inktrace/inktrace.h"
+#include "program.h"
 #include "window/viewer.h"
 
 namespace {
 
 using namespace inktrace;
-
-constexpr int kBadInput = 1;
-constexpr int kBadUsage = 2;
-
-extern "C" void end_cleanly(int signal) {
-    remove_unfinished_files();
-    std::signal(signal, SIG_DFL);
-    std::raise(signal);
-}
 
 int fail(const std::string& problem, int status) {
     std::fputs(fmt::format("inktrace view: {}\n", problem).c_str(), stderr);
@@ -74,7 +65,7 @@ int run(int argc, char** argv) {
         for (const auto& [name, value] : flags) settings.set(name, value);
         viewer::Viewer({files.begin(), files.end()}, flags).run();
     } catch (const Error& error) {
-        return fail(error.what(), error.kind() == Error::Kind::usage ? kBadUsage : kBadInput);
+        return fail(error.what(), exit_status(error));
     }
     return EXIT_SUCCESS;
 }
@@ -82,10 +73,7 @@ int run(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
-    for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
-        if (std::signal(signal, end_cleanly) == SIG_IGN) std::signal(signal, SIG_IGN);
-    }
-    for (const int signal : {SIGXFSZ, SIGPIPE}) std::signal(signal, SIG_IGN);
+    watch_signals();
     try {
         return run(argc, argv);
     } catch (const std::exception& error) {
