@@ -432,7 +432,9 @@ TEST_F(CommandLine, MakesAPageOfThePapersFiguresAndTables) {
     expect_says(read_bytes(file("g/figure4-b.svg")), {"= 24,", "= 9</text>"});
 
     EXPECT_EQ(run({"gallery", "-o", "g", "--figures", "11"}).status, 2);
-    EXPECT_EQ(run({"gallery", "-o", "g", "--figures", "7", "--mesh", "missing.obj"}).status, 1);
+    // A missing mesh is found before anything is drawn.
+    EXPECT_EQ(run({"gallery", "-o", "none", "--mesh", "missing.obj"}).status, 1);
+    EXPECT_FALSE(fs::exists(file("none")));
 }
 
 TEST_F(CommandLine, WritesAovsBesideCurvesAsPictures) {

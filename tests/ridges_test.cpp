@@ -6,7 +6,9 @@
 
 #include <cmath>
 #include <functional>
+#include <numbers>
 #include <string>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -113,20 +115,56 @@ const std::vector<float>& strengths(const Film& film) {
     throw std::logic_error("no such plane");
 }
 
-class RidgesOf : public testing::TestWithParam<Method> {};
+Object exact(const TurnedEllipsoid& ellipsoid) {
+    Object object;
+    object.kind = ObjectKind::shape;
+    object.shape = Glyphs{{GlyphKind::ellipsoid}, {ellipsoid.placement()}, {}, {}};
+    return object;
+}
 
-INSTANTIATE_TEST_SUITE_P(Ridges, RidgesOf, testing::Values(Method::stencil, Method::edges),
-                         [](const auto& method) {
-                             return std::string(method.param == Method::edges ? "Edges"
-                                                                              : "Stencil");
-                         });
+/// In triangles of a pixel or two, whose normals are interpolated.
+Object tessellated(const TurnedEllipsoid& ellipsoid) {
+    constexpr std::uint32_t kAround = 720;
+    constexpr std::uint32_t kRows = 360;
+    const Placement place = ellipsoid.placement();
+    std::vector<Vec3f> vertices;
+    std::vector<Mesh::Triangle> triangles;
+    for (std::uint32_t j = 0; j <= kRows; ++j) {
+        const double v = std::numbers::pi * j / kRows;
+        for (std::uint32_t i = 0; i < kAround; ++i) {
+            const double u = 2 * std::numbers::pi * i / kAround;
+            vertices.push_back(to_float(
+                place.point({std::sin(v) * std::cos(u), std::sin(v) * std::sin(u), std::cos(v)})));
+            if (j == kRows) continue;
+            const std::uint32_t a = j * kAround + i;
+            const std::uint32_t b = j * kAround + (i + 1) % kAround;
+            triangles.push_back({a, a + kAround, b});
+            triangles.push_back({b, a + kAround, b + kAround});
+        }
+    }
+    Object object = mesh_object(std::move(vertices), std::move(triangles));
+    smooth_normals(std::get<Mesh>(object.shape));
+    return object;
+}
+
+struct RidgeCase {
+    std::string name;
+    Method method;
+    Object (*object)(const TurnedEllipsoid&);
+};
+
+class RidgesOf : public testing::TestWithParam<RidgeCase> {};
+
+INSTANTIATE_TEST_SUITE_P(Ridges, RidgesOf,
+                         testing::Values(RidgeCase{"Stencil", Method::stencil, exact},
+                                         RidgeCase{"Edges", Method::edges, exact},
+                                         RidgeCase{"StencilOnAMesh", Method::stencil, tessellated},
+                                         RidgeCase{"EdgesOnAMesh", Method::edges, tessellated}),
+                         [](const auto& ridges) { return ridges.param.name; });
 
 TEST_P(RidgesOf, AnEllipsoidRunWithinHalfAPixelOfTheirDefinition) {
     constexpr int kSide = 400;
     const TurnedEllipsoid ellipsoid{{180, 70, 170}, 0.25};
-    Object object;
-    object.kind = ObjectKind::shape;
-    object.shape = Glyphs{{GlyphKind::ellipsoid}, {ellipsoid.placement()}, {}, {}};
     Settings settings;
     settings.size = {kSide, kSide};
     settings.view.view = View::front;
@@ -134,7 +172,7 @@ TEST_P(RidgesOf, AnEllipsoidRunWithinHalfAPixelOfTheirDefinition) {
     settings.view.look_at = Vec3d{0, 0, 0};
     settings.view.orthographic = kSide;
     settings.aovs = {Aov::lines};
-    settings.method = GetParam();
+    settings.method = GetParam().method;
     settings.metric = Metric{Metric::Kind::solid};
     settings.line_width = {3.0, Length::Unit::px};
     settings.ridge_scale = {5.0, Length::Unit::px};
@@ -142,8 +180,8 @@ TEST_P(RidgesOf, AnEllipsoidRunWithinHalfAPixelOfTheirDefinition) {
     settings.lines = {};
     settings.lines.add(LineType::ridge);
     settings.threads = 1;
-    const Scene scene({object});
-    const auto tracer = make_embree_tracer(scene);
+    const Scene scene({GetParam().object(ellipsoid)});
+    const auto tracer = make_tracer(scene);
     const Film film = render(scene, *tracer, settings);
     const auto& ink = strengths(film);
 

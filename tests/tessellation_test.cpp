@@ -1,11 +1,13 @@
 // Exact shapes against fine tessellations of their parametric forms: near, at grazing angles and
-// from far away.
+// from far away; their normals and curvatures against differences of these forms.
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
+#include <memory>
 #include <numbers>
 #include <optional>
 #include <ostream>
@@ -25,11 +27,21 @@ using std::numbers::pi;
 /// A part of a surface over [0, 1]^2.
 using Patch = std::function<Vec3d(double u, double v)>;
 
+/// The exact shape: its first crossing with a ray in an interval.
+using Intersect = std::function<std::optional<ShapeHit>(const ShapeRay&, double, double)>;
+
+Intersect exactly(const UnitShape& shape) {
+    return [placed = PlacedShape(shape, {})](const ShapeRay& ray, double t_near, double t_far) {
+        return placed.intersect(ray, t_near, t_far);
+    };
+}
+
 struct ParametricShape {
     std::string name;
-    UnitShape shape;
+    Intersect exact;
     std::vector<Patch> patches;
-    double error = 0.0;  ///< distance of the tessellation from the shape, at most
+    double error = 0.0;      ///< distance of the tessellation from the shape, at most
+    double rounding = 1e-6;  ///< of distances to the shape
 
     friend std::ostream& operator<<(std::ostream& out, const ParametricShape& shape) {
         return out << shape.name;
@@ -74,22 +86,103 @@ ParametricShape frustum_of(const std::string& name, double above, bool capped) {
     }};
     if (capped) patches.push_back(disc_at(-1, 1));
     if (capped && above > 0) patches.push_back(disc_at(1, above));
-    return {name, {GlyphKind::frustum, above, 1.0, capped}, patches, 1e-4};
+    return {name, exactly({GlyphKind::frustum, above, 1.0, capped}), patches, 1e-4};
+}
+
+/// The four corners of a planar face, blended.
+Patch face_of(const std::array<Vec3d, 4>& corners) {
+    return [corners](double u, double v) {
+        return (corners[0] * (1 - u) + corners[1] * u) * (1 - v) +
+               (corners[3] * (1 - u) + corners[2] * u) * v;
+    };
+}
+
+ParametricShape hexahedron_of(const std::string& name, const Hexahedra::Corners& corners) {
+    std::vector<Patch> patches;
+    for (const auto& face : Hexahedra::kFaces) {
+        std::array<Vec3d, 4> points;
+        for (std::size_t k = 0; k < 4; ++k) points[k] = to_double(corners[face[k]]);
+        patches.push_back(face_of(points));
+    }
+    const auto exact = [corners](const ShapeRay& ray, double t_near, double t_far) {
+        return intersect(corners, ray, t_near, t_far);
+    };
+    return {name, exact, patches, 1e-6};
+}
+
+constexpr Hexahedra::Corners kCube{{{-1, -1, -1},
+                                    {1, -1, -1},
+                                    {1, 1, -1},
+                                    {-1, 1, -1},
+                                    {-1, -1, 1},
+                                    {1, -1, 1},
+                                    {1, 1, 1},
+                                    {-1, 1, 1}}};
+
+/// A cube under an affine map, as glyphs are deformed.
+Hexahedra::Corners sheared() {
+    Hexahedra::Corners corners = kCube;
+    for (Vec3f& p : corners) {
+        p = Vec3f{0.9F, 0.1F, 0.0F} * p.x + Vec3f{0.3F, 0.7F, 0.1F} * p.y +
+            Vec3f{-0.2F, 0.1F, 0.8F} * p.z;
+    }
+    return corners;
+}
+
+/// Faces stay planar where a cube tapers.
+Hexahedra::Corners tapered() {
+    Hexahedra::Corners corners = kCube;
+    for (Vec3f& p : corners) {
+        if (p.z > 0) p = {0.5F * p.x + 0.1F, 0.5F * p.y - 0.2F, p.z};
+    }
+    return corners;
+}
+
+/// Rays through the tracer of scenes, one by one; it works in floats, so a ray starts near by.
+Intersect a_sphere_of_a_scene() {
+    struct Traced {
+        Scene scene{{sphere_object({{{0, 0, 0}, 1.0F}})}};
+        std::unique_ptr<Tracer> tracer = make_embree_tracer(scene);
+    };
+    return [traced = std::make_shared<Traced>()](const ShapeRay& ray, double t_near,
+                                                 double t_far) -> std::optional<ShapeHit> {
+        const Frame& frame = traced->scene.frame();
+        const double start = std::max(t_near, -dot(ray.origin, ray.dir) - 4.0);
+        const Vec3f origin = frame.from_world(ray.origin + ray.dir * start);
+        std::array<RayPacket, 1> rays;
+        rays[0].origin_x.fill(origin.x);
+        rays[0].origin_y.fill(origin.y);
+        rays[0].origin_z.fill(origin.z);
+        rays[0].dir_x.fill(static_cast<float>(ray.dir.x));
+        rays[0].dir_y.fill(static_cast<float>(ray.dir.y));
+        rays[0].dir_z.fill(static_cast<float>(ray.dir.z));
+        std::array<HitPacket, 1> hits;
+        traced->tracer->intersect(rays, hits, Coherence::incoherent);
+        const double t = start + static_cast<double>(hits[0].t[0]) * frame.unit;
+        if (hits[0].object[0] == kNoObject || t >= t_far) return std::nullopt;
+        return ShapeHit{t,
+                        to_double({hits[0].normal_x[0], hits[0].normal_y[0], hits[0].normal_z[0]})};
+    };
 }
 
 std::vector<ParametricShape> parametric_shapes() {
     using enum GlyphKind;
     std::vector<ParametricShape> shapes;
-    shapes.push_back({"Ellipsoid", {ellipsoid}, {rounded(1, 1)}, 2e-4});
+    shapes.push_back({"Sphere", a_sphere_of_a_scene(), {rounded(1, 1)}, 2e-4, 1e-5});
+    shapes.push_back({"Ellipsoid", exactly({ellipsoid}), {rounded(1, 1)}, 2e-4});
+    shapes.push_back(hexahedron_of("Cube", kCube));
+    shapes.push_back(hexahedron_of("ShearedHexahedron", sheared()));
+    shapes.push_back(hexahedron_of("TaperedHexahedron", tapered()));
+    shapes.push_back({"Box", exactly({box}), shapes[2].patches, 1e-6});
     shapes.push_back(frustum_of("Cylinder", 1.0, true));
     shapes.push_back(frustum_of("Tube", 1.0, false));
     shapes.push_back(frustum_of("Cone", 0.0, true));
     shapes.push_back(frustum_of("Frustum", 0.4, true));
-    shapes.push_back({"Disc", {disc}, {disc_at(0, 1)}, 1e-4});
-    shapes.push_back({"Rectangle", {rectangle}, {flat}, 1e-6});
+    shapes.push_back({"Disc", exactly({disc}), {disc_at(0, 1)}, 1e-4});
+    shapes.push_back({"Rectangle", exactly({rectangle}), {flat}, 1e-6});
     for (const double a : {0.05, 0.4, 0.95}) {
         shapes.push_back({"Torus" + std::to_string(static_cast<int>(100 * a)),
-                          {torus, a},
+                          exactly({torus, a}),
                           {[=](double u, double v) {
                               const double ring = 1 + a * std::cos(2 * pi * v);
                               return Vec3d{ring * std::cos(2 * pi * u), ring * std::sin(2 * pi * u),
@@ -97,19 +190,20 @@ std::vector<ParametricShape> parametric_shapes() {
                           }},
                           2e-4});
     }
-    shapes.push_back({"RoundedCube", {superellipsoid, 0.3, 0.3}, {rounded(0.3, 0.3)}, 2e-3});
-    shapes.push_back({"Pillow", {superellipsoid, 1.0, 0.5}, {rounded(1.0, 0.5)}, 1e-3});
-    shapes.push_back({"Star", {superellipsoid, 1.6, 1.8}, {rounded(1.6, 1.8)}, 1e-3});
+    shapes.push_back(
+        {"RoundedCube", exactly({superellipsoid, 0.3, 0.3}), {rounded(0.3, 0.3)}, 2e-3});
+    shapes.push_back({"Pillow", exactly({superellipsoid, 1.0, 0.5}), {rounded(1.0, 0.5)}, 1e-3});
+    shapes.push_back({"Star", exactly({superellipsoid, 1.6, 1.8}), {rounded(1.6, 1.8)}, 1e-3});
     for (const double sigma : {0.35, 0.1}) {
         shapes.push_back({"Gaussian" + std::to_string(static_cast<int>(100 * sigma)),
-                          {gaussian, sigma},
+                          exactly({gaussian, sigma}),
                           {graph_of([=](double x, double y) {
                               return std::exp(-0.5 * (x * x + y * y) / (sigma * sigma));
                           })},
                           1e-3});
     }
     shapes.push_back({"Waves",
-                      {waves, 2.0, 1.5},
+                      exactly({waves, 2.0, 1.5}),
                       {graph_of([](double x, double y) {
                           return std::cos(2 * pi * x) * std::cos(1.5 * pi * y);
                       })},
@@ -174,17 +268,25 @@ class Tessellation : public testing::TestWithParam<ParametricShape> {
     struct Place {
         Vec3d point, normal;
     };
-    /// A point of the surface and its normal, by central differences.
-    Place random_place(std::mt19937& random) const {
+    struct Coordinates {
+        const Patch* patch;
+        double u, v;
+    };
+    Coordinates random_coordinates(std::mt19937& random) const {
         const auto& patches = GetParam().patches;
         const Patch& patch = patches[random() % patches.size()];
+        const double u = 0.02 + 0.96 * uniform(random);
+        const double v = 0.02 + 0.96 * uniform(random);
+        return {&patch, u, v};
+    }
+    /// A point of the surface and its normal, by central differences.
+    Place random_place(std::mt19937& random) const {
         for (;;) {
-            const double u = 0.02 + 0.96 * uniform(random);
-            const double v = 0.02 + 0.96 * uniform(random);
+            const auto [patch, u, v] = random_coordinates(random);
             constexpr double e = 1e-5;
-            const Vec3d n =
-                cross(patch(u + e, v) - patch(u - e, v), patch(u, v + e) - patch(u, v - e));
-            if (length(n) > 1e-14) return {patch(u, v), normalize(n)};
+            const Vec3d n = cross((*patch)(u + e, v) - (*patch)(u - e, v),
+                                  (*patch)(u, v + e) - (*patch)(u, v - e));
+            if (length(n) > 1e-14) return {(*patch)(u, v), normalize(n)};
         }
     }
 };
@@ -195,7 +297,7 @@ INSTANTIATE_TEST_SUITE_P(Of, Tessellation, testing::ValuesIn(parametric_shapes()
 /// Rays along tangents, a little above and below the surface: those below, where it is round, meet
 /// it at angles down to a hundredth of a radian.
 TEST_P(Tessellation, IsHitWhereTheExactShapeIsAlsoAtGrazingAnglesAndFromFarAway) {
-    const PlacedShape shape(GetParam().shape, {});
+    const Intersect& exact = GetParam().exact;
     std::mt19937 random(31);
     std::vector<ShapeRay> rays;
     for (int i = 0; i < 6000; ++i) {
@@ -214,12 +316,12 @@ TEST_P(Tessellation, IsHitWhereTheExactShapeIsAlsoAtGrazingAnglesAndFromFarAway)
     int grazing = 0;
     int different = 0;
     for (std::size_t k = 0; k < rays.size(); ++k) {
-        const auto hit = shape.intersect(rays[k], 0.0, 1e9);
+        const auto hit = exact(rays[k], 0.0, 1e9);
         const ShapeRay from_far{rays[k].origin - rays[k].dir * 1e4, rays[k].dir};
-        const auto far = shape.intersect(from_far, 0.0, 1e9);
+        const auto far = exact(from_far, 0.0, 1e9);
         ASSERT_EQ(hit.has_value(), far.has_value()) << k;
         if (hit) {
-            EXPECT_NEAR(far->t - 1e4, hit->t, 1e-6) << k;
+            EXPECT_NEAR(far->t - 1e4, hit->t, GetParam().rounding) << k;
         }
         const double along =
             hit ? std::abs(dot(hit->normal, rays[k].dir)) / length(hit->normal) : 0.0;
@@ -241,7 +343,7 @@ TEST_P(Tessellation, IsHitWhereTheExactShapeIsAlsoAtGrazingAnglesAndFromFarAway)
 }
 
 TEST_P(Tessellation, HasTheNormalsOfTheExactShape) {
-    const PlacedShape shape(GetParam().shape, {});
+    const Intersect& exact = GetParam().exact;
     std::mt19937 random(32);
     int seen = 0;
     for (int i = 0; i < 1000; ++i) {
@@ -249,7 +351,7 @@ TEST_P(Tessellation, HasTheNormalsOfTheExactShape) {
         for (const double side : {1.0, -1.0}) {
             // From close by, so that nothing else is in the way.
             const ShapeRay ray{point + normal * (side * 1e-4), normal * -side};
-            const auto hit = shape.intersect(ray, 0.0, 2e-4);
+            const auto hit = exact(ray, 0.0, 2e-4);
             ASSERT_TRUE(hit.has_value()) << i;
             EXPECT_NEAR(hit->t, 1e-4, 1e-6);
             const Vec3d n = normalize(hit->normal);
@@ -258,6 +360,147 @@ TEST_P(Tessellation, HasTheNormalsOfTheExactShape) {
         }
     }
     EXPECT_EQ(seen, 2000);
+}
+
+/// Principal curvatures; positive where the surface falls away from its normal.
+struct Curvatures {
+    double least, most;
+};
+
+/// From how a surface and its normals change along two ways on it (Weingarten: the second
+/// fundamental form over the first).
+Curvatures curvatures(Vec3d pu, Vec3d pv, Vec3d nu, Vec3d nv) {
+    const double E = dot(pu, pu);
+    const double F = dot(pu, pv);
+    const double G = dot(pv, pv);
+    const double L = dot(nu, pu);
+    const double M = 0.5 * (dot(nu, pv) + dot(nv, pu));
+    const double N = dot(nv, pv);
+    const double area = E * G - F * F;
+    const double K = (L * N - M * M) / area;
+    const double H = 0.5 * (E * N - 2.0 * F * M + G * L) / area;
+    const double root = std::sqrt(std::max(H * H - K, 0.0));
+    return {H - root, H + root};
+}
+
+/// By differences of the points of a parametric form, with the normal on the side of `outward`.
+Curvatures parametric_curvatures(const Patch& patch, double u, double v, double e, Vec3d outward) {
+    const auto normal = [&](double s, double t) {
+        const Vec3d n =
+            normalize(cross(patch(s + e, t) - patch(s - e, t), patch(s, t + e) - patch(s, t - e)));
+        return dot(n, outward) > 0.0 ? n : -n;
+    };
+    return curvatures(patch(u + e, v) - patch(u - e, v), patch(u, v + e) - patch(u, v - e),
+                      normal(u + e, v) - normal(u - e, v), normal(u, v + e) - normal(u, v - e));
+}
+
+/// By differences of what four rays about a point see.
+std::optional<Curvatures> traced_curvatures(const Intersect& exact, Vec3d point, Vec3d normal,
+                                            double step) {
+    const Vec3d any = std::abs(normal.x) < 0.8 ? Vec3d{1, 0, 0} : Vec3d{0, 1, 0};
+    const Vec3d a = normalize(cross(normal, any));
+    const Vec3d b = cross(normal, a);
+    std::array<Vec3d, 4> points;
+    std::array<Vec3d, 4> normals;
+    constexpr double kAbove = 2e-3;
+    for (std::size_t k = 0; k < 4; ++k) {
+        const Vec3d aside = (k < 2 ? a : b) * (k % 2 == 0 ? step : -step);
+        const ShapeRay ray{point + aside + normal * kAbove, -normal};
+        const auto hit = exact(ray, 0.0, 2.0 * kAbove);
+        if (!hit) return std::nullopt;
+        points[k] = ray.origin + ray.dir * hit->t;
+        normals[k] = normalize(hit->normal);
+        if (dot(normals[k], normal) < 0.0) normals[k] = -normals[k];
+    }
+    return curvatures(points[0] - points[1], points[2] - points[3], normals[0] - normals[1],
+                      normals[2] - normals[3]);
+}
+
+TEST_P(Tessellation, HasTheCurvaturesOfTheExactShape) {
+    std::mt19937 random(33);
+    int compared = 0;
+    for (int i = 0; i < 1000; ++i) {
+        const auto [patch, u, v] = random_coordinates(random);
+        constexpr double e = 1e-3;
+        const Vec3d n =
+            cross((*patch)(u + e, v) - (*patch)(u - e, v), (*patch)(u, v + e) - (*patch)(u, v - e));
+        if (length(n) < 1e-10) continue;
+        const Vec3d normal = normalize(n);
+        const Curvatures known = parametric_curvatures(*patch, u, v, 0.5 * e, normal);
+        const double scale = 1.0 + std::max(std::abs(known.least), std::abs(known.most));
+        const auto alike = [&](const Curvatures& other, const Curvatures& one) {
+            return std::max(std::abs(other.least - one.least), std::abs(other.most - one.most)) <
+                   2e-3 * scale;
+        };
+        const Vec3d point = (*patch)(u, v);
+        const auto traced = traced_curvatures(GetParam().exact, point, normal, 1e-3);
+        const auto wider = traced_curvatures(GetParam().exact, point, normal, 2e-3);
+        // Near sharp edges and poles, differences depend on their steps.
+        if (!traced || !wider || !alike(*wider, *traced) ||
+            !alike(parametric_curvatures(*patch, u, v, e, normal), known)) {
+            continue;
+        }
+        ++compared;
+        EXPECT_NEAR(traced->least, known.least, 0.01 * scale) << u << ", " << v;
+        EXPECT_NEAR(traced->most, known.most, 0.01 * scale) << u << ", " << v;
+    }
+    EXPECT_GT(compared, 500);
+    RecordProperty("compared", compared);
+}
+
+/// Against triangles in double precision, also for rays that only Embree traces.
+TEST(Hexahedra, AreHitWhereBruteForceHitsTheirTriangles) {
+    std::mt19937 random(34);
+    for (const Hexahedra::Corners& corners : {kCube, sheared(), tapered()}) {
+        Object solid;
+        solid.kind = ObjectKind::shape;
+        solid.shape = Hexahedra{{corners}, {}, {}};
+        const Scene exact({solid});
+        std::vector<Mesh::Triangle> triangles;
+        for (const auto& [a, b, c, d] : Hexahedra::kFaces) {
+            triangles.push_back({a, b, c});
+            triangles.push_back({a, c, d});
+        }
+        const Scene mesh({mesh_object({corners.begin(), corners.end()}, std::move(triangles))});
+        std::vector<RayPacket> rays(100);
+        for (RayPacket& packet : rays) {
+            for (int i = 0; i < kLanes; ++i) {
+                const Vec3f origin =
+                    normalize(uniform_point(random) - Vec3f{0.5F, 0.5F, 0.5F}) * 3.0F;
+                const Vec3f aim = (uniform_point(random) - Vec3f{0.5F, 0.5F, 0.5F}) * 1.2F;
+                const Vec3f dir = normalize(aim - origin);
+                packet.origin_x[i] = origin.x;
+                packet.origin_y[i] = origin.y;
+                packet.origin_z[i] = origin.z;
+                packet.dir_x[i] = dir.x;
+                packet.dir_y[i] = dir.y;
+                packet.dir_z[i] = dir.z;
+            }
+        }
+        ASSERT_EQ(exact.frame().unit, mesh.frame().unit);
+        std::vector<HitPacket> expected(rays.size());
+        make_brute_force_tracer(mesh)->intersect(rays, expected, Coherence::incoherent);
+        for (const PacketWidth width :
+             {PacketWidth::one, PacketWidth::eight, PacketWidth::sixteen}) {
+            std::vector<HitPacket> hits(rays.size());
+            make_embree_tracer(exact, width)->intersect(rays, hits, Coherence::incoherent);
+            int seen = 0;
+            for (std::size_t k = 0; k < rays.size(); ++k) {
+                for (int i = 0; i < kLanes; ++i) {
+                    ASSERT_EQ(hits[k].object[i], expected[k].object[i]) << k << ", " << i;
+                    if (hits[k].object[i] == kNoObject) continue;
+                    ++seen;
+                    EXPECT_NEAR(hits[k].t[i], expected[k].t[i], 1e-5F);
+                    const Vec3f n = normalize(
+                        Vec3f{hits[k].normal_x[i], hits[k].normal_y[i], hits[k].normal_z[i]});
+                    const Vec3f m = normalize(Vec3f{
+                        expected[k].normal_x[i], expected[k].normal_y[i], expected[k].normal_z[i]});
+                    EXPECT_LT(length(n - m), 1e-4F);
+                }
+            }
+            EXPECT_GT(seen, 300);
+        }
+    }
 }
 
 }  // namespace

@@ -96,6 +96,11 @@ std::vector<GalleryTable> tables(const GalleryArguments& arguments) {
 }
 
 void run(const GalleryArguments& arguments) {
+    // Not after half a minute of drawing.
+    if (!arguments.mesh.empty() && !fs::exists(arguments.mesh)) {
+        throw Error(Error::Kind::input,
+                    fmt::format("{}: no such file; check the path", arguments.mesh));
+    }
     std::error_code failure;
     fs::create_directories(arguments.output, failure);
     std::vector<Figure> figures = gallery_figures();

@@ -129,7 +129,16 @@ Figure figure7() {
                             {"lines", "silhouette,self-occlusion"},
                             {"depth-jump", "0.03"},
                             {"line-width", "2px"},
-                            {"size", "480x480"}})}}};
+                            {"size", "480x480"}})},
+             {"figure7-edges",
+              kMesh,
+              "Both by method edges, which thins lines out where triangles are finer than the "
+              "lines are wide.",
+              {{"shade", "lambert"},
+               {"lines", "silhouette,self-occlusion,boundary,mesh"},
+               {"line", "mesh:width=1px"},
+               {"line-width", "2px"},
+               {"size", "480x480"}}}}};
 }
 
 Figure figure8() {
