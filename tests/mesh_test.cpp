@@ -442,6 +442,94 @@ TEST(EdgeFlags, CallAnEdgeOfThreeTrianglesACrease) {
     EXPECT_EQ(corner_normal(mesh, 0, 0), (Vec3f{0, 0, 1}));
 }
 
+// ---- seams -------------------------------------------------------------------------------------
+
+/// A cylinder whose side and caps have rims of their own, the corners of which are off by up to
+/// `error`: so CAD programs write bodies.
+Mesh unsewn_cylinder(std::uint32_t sides, double error, bool in_parts = false) {
+    std::mt19937 random(7);
+    std::uniform_real_distribution<double> off(-0.5 * error, 0.5 * error);
+    Mesh mesh;
+    const auto corner = [&](std::uint32_t i, double z) {
+        const double a = kFullTurn * (i % sides) / sides;
+        mesh.vertices.push_back(
+            to_float(Vec3d{std::cos(a) + off(random), std::sin(a) + off(random), z + off(random)}));
+    };
+    for (const double z : {0.0, 1.0, 0.0, 1.0}) {
+        for (std::uint32_t i = 0; i < sides; ++i) corner(i, z);
+    }
+    const std::uint32_t cap = 2 * sides;
+    for (std::uint32_t i = 0; i < sides; ++i) {
+        const std::uint32_t j = (i + 1) % sides;
+        mesh.triangles.push_back({i, j, sides + j});
+        mesh.triangles.push_back({i, sides + j, sides + i});
+    }
+    for (std::uint32_t i = 1; i + 1 < sides; ++i) {
+        mesh.triangles.push_back({cap, cap + i + 1, cap + i});
+        mesh.triangles.push_back({cap + sides, cap + sides + i, cap + sides + i + 1});
+    }
+    if (in_parts) {
+        mesh.parts.assign(mesh.triangles.size(), 1);
+        std::fill_n(mesh.parts.begin(), 2 * sides, 0U);
+    }
+    weld(mesh);
+    return mesh;
+}
+
+std::size_t open_edges(Mesh mesh) {
+    smooth_normals(mesh);
+    return count_flags(mesh, Mesh::kBoundaryEdge);
+}
+
+TEST(Stitch, ClosesABodyWhoseFacesHaveRoundedCorners) {
+    constexpr std::uint32_t kSides = 24;
+    for (const double error : {1e-6, 1e-5, 1e-4}) {
+        Mesh mesh = unsewn_cylinder(kSides, error);
+        EXPECT_EQ(open_edges(mesh), 4 * kSides) << error;
+        EXPECT_EQ(stitch(mesh), 2 * kSides) << error;
+        EXPECT_EQ(mesh.vertices.size(), 2 * kSides) << error;
+        EXPECT_EQ(open_edges(mesh), 0U) << error;
+        EXPECT_EQ(creases(mesh), 2 * kSides) << error;
+    }
+}
+
+TEST(Stitch, LeavesAGapThatIsOfTheShape) {
+    // Once wider than 1e-4 of the size, once than a tenth of the edges.
+    Mesh wide = unsewn_cylinder(24, 2e-3);
+    EXPECT_EQ(stitch(wide), 0U);
+    Mesh fine = unsewn_cylinder(200'000, 2e-5);
+    EXPECT_LT(stitch(fine), 4'000U);
+}
+
+TEST(Stitch, KeepsPartsApart) {
+    Mesh mesh = unsewn_cylinder(24, 1e-5, true);
+    EXPECT_EQ(stitch(mesh), 0U);
+}
+
+TEST(Stitch, ChangesNothingWhereNoSeamIs) {
+    for (const Mesh& mesh : {torus(24, 12), wedge(30.0, 8), sphere(3)}) {
+        Mesh after = mesh;
+        EXPECT_EQ(stitch(after), 0U);
+        EXPECT_EQ(after.vertices, mesh.vertices);
+        EXPECT_EQ(after.triangles, mesh.triangles);
+    }
+}
+
+TEST(Stitch, TakesNoLongWhereAllCornersAreOpen) {
+    std::mt19937 random(5);
+    std::uniform_real_distribution<float> at(0.0F, 1.0F), off(0.0F, 1e-3F);
+    Mesh soup;
+    for (std::uint32_t i = 0; i < 200'000; ++i) {
+        const Vec3f p{at(random), at(random), at(random)};
+        soup.vertices.insert(soup.vertices.end(), {p, p + Vec3f{off(random), off(random), 0},
+                                                   p + Vec3f{0, off(random), off(random)}});
+        soup.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
+    }
+    const auto start = std::chrono::steady_clock::now();
+    stitch(soup);
+    EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(20));
+}
+
 /// A sphere with bumps, noise and a few sharp spikes.
 Mesh rough_sphere() {
     Mesh mesh = sphere(5);

@@ -99,6 +99,7 @@ ink::Object make_mesh(std::string_view name, std::span<const float> vertices,
         mesh.triangles.push_back(corners);
     }
     ink::weld(mesh);
+    ink::stitch(mesh);
     ink::smooth_normals(mesh);
     return {.name = std::string(name),
             .kind = ink::ObjectKind::mesh,

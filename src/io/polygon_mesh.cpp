@@ -135,6 +135,7 @@ Mesh clean_mesh(const std::filesystem::path& file, PolygonMesh& polygons) {
     mesh.colors = std::move(polygons.colors);
     const std::size_t without_area = weld(mesh);
     warn_about_dropped(triangulator.too_small(), without_area, polygons);
+    stitch(mesh);
     if (mesh.triangles.empty()) {
         throw InputError(file, "no face has an area; check the export and its scale");
     }

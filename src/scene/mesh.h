@@ -53,6 +53,20 @@ Vec3f unpack_normal(std::uint32_t packed);
 /// how many triangles were dropped. Linear in time and memory.
 std::size_t weld(Mesh& mesh);
 
+/// How near two corners on open edges must be to be one.
+struct StitchSettings {
+    /// Of the shortest edge at either corner: what is farther apart is of the shape.
+    float share_of_edge = 0.1F;
+    /// And of the mesh's diagonal: a tenth of a pixel where it fills a picture of 1000 pixels.
+    float share_of_size = 1e-4F;
+};
+
+/// Closes the seams of a welded mesh: CAD programs cut each face of a body into triangles on its
+/// own, and round the corners along their common edge differently. Moves pairs of corners on open
+/// edges of one part, each of which is the other's nearest, to one place, and welds again. Returns
+/// how many were moved. A closed mesh costs one look at its triangles.
+std::size_t stitch(Mesh& mesh, const StitchSettings& settings = {});
+
 /// Which edges of a mesh are creases of the shape that it stands for: those where the surface turns
 /// sharply, and those where it turns by more than the round surface about them does. Edges inside a
 /// polygon are none. The numbers were chosen by looking at CAD parts (fandisk, plates with holes, a
