@@ -328,7 +328,6 @@ INSTANTIATE_TEST_SUITE_P(
                 {"'--jsn'", "did you mean --json?", kSeeHelp}},
         Mistake{"negative_frame_of_info", {"info", "--frame", "-1", kSample}, {"--frame", "-1"}},
         Mistake{"no_input", {"render", "-o", "a.png"}, {"INPUT is required", kSeeHelp}},
-        Mistake{"no_output", {"render", kSample}, {"--output is required", kSeeHelp}},
         draw("output_with_unknown_extension", kSample, "a.foo",
              {"a.foo: ", "cannot tell the picture's format",
               ".png, .jpg, .tiff, .exr, .svg or .pdf"}),
@@ -388,6 +387,23 @@ TEST_F(CommandLine, RefusesAPictureThatDoesNotFitIntoMemoryBeforeItReadsTheInput
     EXPECT_EQ(outcome.status, 2) << outcome.err;
     expect_says(outcome.err, {"--size: 65500x65500 needs 326.1 GB", "this machine has", "smaller"});
     EXPECT_EQ(files(), std::set<std::string>{});
+}
+
+TEST_F(CommandLine, DrawsAFileThatIsNamedAlone) {
+    fs::create_directory(file("molecules"));
+    folder_.write("molecules/water.xyz", kXyz);
+    const Outcome outcome = run({"molecules/water.xyz", "--size", "64x48"});
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    EXPECT_EQ(files(), (std::set<std::string>{"molecules", "molecules/water.xyz", "water.png"}));
+}
+
+TEST_F(CommandLine, OverwritesNoPictureThatWasNotNamed) {
+    folder_.write("water.xyz", kXyz);
+    folder_.write("water.png", "somebody's");
+    const Outcome outcome = run({"render", "water.xyz"});
+    EXPECT_EQ(outcome.status, 2) << outcome.err;
+    expect_says(outcome.err, {"water.png exists", "-o"});
+    EXPECT_EQ(fs::file_size(file("water.png")), 10U);
 }
 
 TEST_F(CommandLine, LeavesNothingOnADiskThatIsFull) {

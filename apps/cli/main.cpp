@@ -4,8 +4,11 @@
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
+#include <filesystem>
 #include <string>
 #include <string_view>
+#include <system_error>
+#include <utility>
 #include <vector>
 
 #include "base/text.h"
@@ -17,7 +20,10 @@
 namespace {
 
 std::string formats() {
-    std::string text = "Reads (all of them also compressed, as .gz):";
+    std::string text =
+        "'inktrace FILE...' is short for 'inktrace render FILE...'.\n\nReads (all of them also "
+        "compressed, "
+        "as .gz):";
     for (const auto& [name, extensions] : inktrace::input_formats()) {
         text += fmt::format("\n  {:<13}{}", name, extensions);
     }
@@ -42,7 +48,8 @@ std::string unknown_argument(const CLI::App& app) {
             known.push_back(command->get_name());
         }
     }
-    std::string text = fmt::format("there is no {} '{}'", is_flag ? "flag" : "command", word);
+    std::string text =
+        fmt::format("there is no {} '{}'", is_flag ? "flag" : "command or file", word);
     const std::string_view dashes = is_flag ? "--" : "";
     if (!word.starts_with(dashes)) return text;  // one letter resembles everything
     const std::string_view name = std::string_view(word).substr(dashes.size());
@@ -57,6 +64,21 @@ int report_usage(std::string_view problem) {
     return inktrace::kBadUsage;
 }
 
+/// What was typed; `inktrace FILE...` is short for `inktrace render FILE...`.
+std::vector<std::string> arguments(const CLI::App& app, int argc, char** argv) {
+    std::vector<std::string> words(argv + 1, argv + argc);
+    if (words.empty()) return words;
+    const std::string& first = words.front();
+    std::error_code failure;
+    const bool is_command =
+        std::ranges::any_of(app.get_subcommands({}),
+                            [&](const CLI::App* command) { return command->get_name() == first; });
+    if (!is_command && std::filesystem::exists(first, failure)) {
+        words.insert(words.begin(), "render");
+    }
+    return words;
+}
+
 int run(int argc, char** argv) {
     CLI::App app(
         "Inktrace draws molecules, particles and meshes with feature lines of exact width.",
@@ -69,7 +91,9 @@ int run(int argc, char** argv) {
     inktrace::cli::add_gallery_command(app);
     inktrace::cli::add_bench_command(app);
     try {
-        app.parse(argc, argv);
+        std::vector<std::string> words = arguments(app, argc, argv);
+        std::ranges::reverse(words);  // as CLI11 takes them
+        app.parse(std::move(words));
         if (app.get_subcommands().empty()) return report_usage("a command is missing");
     } catch (const CLI::ExtrasError&) {
         return report_usage(unknown_argument(app));

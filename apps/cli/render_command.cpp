@@ -128,6 +128,20 @@ void run(const RenderArguments& arguments) {
     }
 }
 
+/// "1crn.png" in the working folder for "molecules/1crn.pdb.gz". Throws Error (usage) where there
+/// is such a file: it may be no picture of ours.
+std::string default_output(const std::filesystem::path& input) {
+    std::filesystem::path name = input.filename();
+    if (name.extension() == ".gz") name.replace_extension();
+    name.replace_extension(".png");
+    std::error_code failure;
+    if (std::filesystem::exists(name, failure)) {
+        throw Error(Error::Kind::usage,
+                    fmt::format("{} exists; say with -o where the picture goes", name.string()));
+    }
+    return name.string();
+}
+
 /// Settings of scene files, and over them the flags that were given.
 void take_scene_settings(const CLI::App& command, RenderArguments& arguments) {
     Settings settings;
@@ -161,9 +175,9 @@ void add_render_command(CLI::App& app) {
     command
         ->add_option("-o,--output", arguments->output,
                      "Picture to write: .png, .jpg, .tiff, .exr; as curves: .svg, .pdf; "
-                     "### in its name is the number of a frame; .mp4: a film of frames, by ffmpeg")
+                     "### in its name is the number of a frame; .mp4: a film of frames, by ffmpeg; "
+                     "by default the input's name with .png, here")
         ->type_name("FILE")
-        ->required()
         ->group("Picture");
     add_setting_flags(*command, arguments->settings);
     command
@@ -201,6 +215,8 @@ void add_render_command(CLI::App& app) {
             arguments->inputs.insert(arguments->inputs.begin(), arguments->scene);
         }
         if (arguments->inputs.empty()) throw CLI::RequiredError("INPUT");
+        if (arguments->output.empty())
+            arguments->output = default_output(arguments->inputs.front());
         take_scene_settings(*command, *arguments);
         run(*arguments);
     });
