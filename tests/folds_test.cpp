@@ -19,8 +19,9 @@ constexpr double kLine = 24.3;  ///< y of the fold
 
 /// A slope that is steepest along y = kLine, where the tangent between it and the ray is `facing`.
 /// In the given ranges of x it hides what lies behind, by up to `depth`; in between it is whole.
-Surface broken_fold(double facing, double depth, std::vector<std::pair<double, double>> ranges) {
-    constexpr double kOpening = 0.015;  // how fast the slope grows less steep to both sides
+/// `opening`: how fast the slope grows less steep to both sides.
+Surface broken_fold(double facing, double depth, std::vector<std::pair<double, double>> ranges,
+                    double opening = 0.015) {
     return {1, [=](double x, double y) -> std::optional<Hit> {
                 const double off = y - kLine;
                 double hidden = 0.0;
@@ -29,8 +30,8 @@ Surface broken_fold(double facing, double depth, std::vector<std::pair<double, d
                         hidden = depth * std::min({1.0, x - low, high - x}) * std::exp(off / 60.0);
                     }
                 }
-                const double slope = 1.0 / (facing + kOpening * std::abs(off));
-                const double rise = std::log(1.0 + kOpening * std::abs(off) / facing) / kOpening;
+                const double slope = 1.0 / (facing + opening * std::abs(off));
+                const double rise = std::log(1.0 + opening * std::abs(off) / facing) / opening;
                 return Hit{std::copysign(rise, off) - hidden, {0.0, slope, 1.0}};
             }};
 }
@@ -90,6 +91,64 @@ TEST(BrokenFold, IsNotBridgedOverALongWay) {
         mend({{broken_fold(0.1, 40.0, {{3, 10}, {36, 45}})}}, 2.0F).repairs.bridges.empty());
 }
 
+TEST(BrokenFold, IsOneLineOverAShortGapWithoutAValley) {
+    constexpr double kEven = 1e-3;  // no steeper along the fold than beside it
+    const Mended mended = mend({{broken_fold(0.15, 40.0, {{5, 20}, {26, 43}}, kEven)}}, 2.0F);
+    Found whole = mended.found;
+    whole.segments = mended.lines;
+    EXPECT_FALSE(mended.repairs.bridges.empty());
+    EXPECT_EQ(loose_ends(whole).size(), 2U) << list(loose_ends(whole));
+    for (const Segment& bridge : mended.repairs.bridges) {
+        for (const Vec2f p : {bridge.a, bridge.b}) EXPECT_NEAR(p.y, kLine, 0.15);
+    }
+    // Over more than four widths it is two.
+    EXPECT_TRUE(mend({{broken_fold(0.15, 40.0, {{5, 16}, {30, 43}}, kEven)}}, 2.0F)
+                    .repairs.bridges.empty());
+}
+
+/// A line along x, as the lattice cuts it.
+void add_fold(std::vector<Segment>& lines, float from, float to, float y) {
+    for (float x = from; x < to; x += 1.0F) {
+        Segment& segment = lines.emplace_back();
+        segment.a = {x, y};
+        segment.b = {x + 1.0F, y};
+        segment.type = LineType::self_occlusion;
+        segment.owner = segment.left = segment.right = 1;
+        segment.spans_cell = true;
+    }
+}
+
+TEST(DoubledFold, IsOneWhereItsTwoStrokesTouch) {
+    const auto plane = [](std::span<const Vec2f> points, std::span<Sample> out) {
+        std::ranges::transform(points, out.begin(), [](Vec2f p) {
+            return Sample{1, {p.x, -p.y, 0.0F}, {0, 0, 1}, 2.0F};
+        });
+    };
+    Viewpoint viewpoint;
+    viewpoint.dir = {0, 0, -1};
+    viewpoint.parallel = true;
+    viewpoint.origin = {{0, 0, 2}, {1, 0, 0}, {0, -1, 0}};
+    viewpoint.direction = {{0, 0, -1}, {}, {}};
+    for (const float apart : {0.5F, 1.9F, 2.1F, 5.0F}) {
+        std::vector<Segment> lines;
+        add_fold(lines, 0.5F, 60.5F, 10.0F);
+        add_fold(lines, 50.5F, 110.5F, 10.0F + apart);
+        const FoldRepairs repairs = mend_folds(lines, viewpoint, 1.0F, 2.0F, plane);
+        const auto drawn_at = [&](float x) {
+            std::ptrdiff_t count = 0;
+            for (std::size_t k = 0; k < lines.size(); ++k) {
+                const bool dropped = std::ranges::binary_search(repairs.crumbs, k);
+                count += !dropped && lines[k].a.x < x && x < lines[k].b.x ? 1 : 0;
+            }
+            return count;
+        };
+        for (float x = 1.0F; x < 110.0F; x += 1.0F) {
+            const bool both = x > 50.5F && x < 60.5F;
+            EXPECT_EQ(drawn_at(x), both && apart > 2.0F ? 2 : 1) << apart << " at " << x;
+        }
+    }
+}
+
 TEST(CrumbOfAFold, IsDroppedIfShortAndShallow) {
     const auto left = [](double depth, double to, float width) {
         return mend({{broken_fold(0.1, depth, {{20, to}})}}, width).lines.size();
@@ -98,6 +157,7 @@ TEST(CrumbOfAFold, IsDroppedIfShortAndShallow) {
     EXPECT_GT(left(18.0, 26, 0.5F), 2U);   // long for its width
     EXPECT_GT(left(100.0, 26, 2.0F), 2U);  // deep
     EXPECT_GT(left(18.0, 40, 2.0F), 15U);  // long
+    EXPECT_EQ(left(6.0, 34, 2.0F), 0U);    // longer than five widths, but hides next to nothing
 }
 
 TEST(CrumbOfAFold, ThatHangsOnAnotherLineIsDroppedIfItIsAStub) {

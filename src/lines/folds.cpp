@@ -11,63 +11,21 @@
 #include <tuple>
 #include <utility>
 
+#include "lines/fold_doubles.h"
+#include "lines/segment_squares.h"
+
 namespace ink {
 
 namespace {
 
+using plane::dot;
+using plane::left_of;
+using plane::length;
+using plane::nearest_on;
+using plane::SegmentSquares;
+using plane::unit;
+
 constexpr std::uint32_t kNone = 0xFFFFFFFFU;
-
-float length(Vec2f v) { return std::sqrt(v.x * v.x + v.y * v.y); }
-Vec2f unit(Vec2f v) { return v * (1.0F / std::max(length(v), 1e-12F)); }
-float dot(Vec2f a, Vec2f b) { return a.x * b.x + a.y * b.y; }
-Vec2f left_of(Vec2f way) { return {way.y, -way.x}; }
-
-Vec2f nearest_on(const Segment& s, Vec2f p) {
-    const Vec2f d = s.b - s.a;
-    const float squared = dot(d, d);
-    if (squared == 0.0F) return s.a;
-    return s.a + d * std::clamp(dot(p - s.a, d) / squared, 0.0F, 1.0F);
-}
-
-/// Segments by squares of the picture, to ask which are near a point.
-class SegmentSquares {
-  public:
-    explicit SegmentSquares(std::span<const Segment> segments) {
-        entries_.reserve(segments.size());
-        for (std::uint32_t k = 0; k < segments.size(); ++k) {
-            entries_.emplace_back(square((segments[k].a + segments[k].b) * 0.5F), k);
-        }
-        std::ranges::sort(entries_);
-    }
-
-    /// Calls `visit` for every segment that may come within a pixel or two of `p`.
-    template <class Visit>
-    void near(Vec2f p, Visit visit) const {
-        for (const float dy : {-kReach, kReach}) {
-            for (const float dx : {-kReach, kReach}) {
-                const std::uint64_t key = square({p.x + dx, p.y + dy});
-                const bool seen_before = (dx > 0.0F && key == square({p.x - kReach, p.y + dy})) ||
-                                         (dy > 0.0F && key == square({p.x + dx, p.y - kReach}));
-                if (seen_before) continue;
-                auto at = std::ranges::lower_bound(entries_, std::pair{key, 0U});
-                for (; at != entries_.end() && at->first == key; ++at) visit(at->second);
-            }
-        }
-    }
-
-  private:
-    static constexpr float kSide = 16.0F;
-    static constexpr float kReach = 2.5F;
-
-    static std::uint64_t square(Vec2f p) {
-        const auto at = [](float x) {
-            return static_cast<std::uint32_t>(static_cast<int>(std::floor(x / kSide)) + (1 << 30));
-        };
-        return static_cast<std::uint64_t>(at(p.y)) << 32U | at(p.x);
-    }
-
-    std::vector<std::pair<std::uint64_t, std::uint32_t>> entries_;
-};
 
 /// A self-occlusion that ends on its own, and the way on from there.
 struct LooseEnd {
@@ -77,6 +35,7 @@ struct LooseEnd {
     bool open = true;
     std::vector<Vec2f> path{};      ///< from the point on
     std::uint32_t reached = kNone;  ///< the segment that the path ends on
+    bool leapt = false;             ///< reached by a leap, by one of its two ends
 };
 
 class FoldMender {
@@ -97,12 +56,16 @@ class FoldMender {
             if (lines_[k].type == LineType::self_occlusion) folds_.push_back(k);
         }
         if (folds_.empty()) return {};
-        squares_.emplace(lines_);
+        squares_.emplace(lines_, 2.5F);
         join();
+        pieces_ = parents_;
+        for (std::uint32_t k = 0; k < lines_.size(); ++k) pieces_[k] = root(k);
         find_loose_ends();
         follow_valleys();
+        leap_gaps();
         build_bridges();
         find_crumbs();
+        drop_doubles();
         return std::move(repairs_);
     }
 
@@ -117,7 +80,7 @@ class FoldMender {
 
     // Groups of segments that hang together: a forest over the indices of all lines.
 
-    std::uint32_t root(std::uint32_t k) {
+    std::uint32_t root(std::uint32_t k) const {
         while (parents_[k] != k) k = parents_[k] = parents_[parents_[k]];
         return k;
     }
@@ -184,6 +147,7 @@ class FoldMender {
             const Vec2f point{std::get<1>(key), std::get<0>(key)};
             if (line_near(point, root(fold)) != kNone) {
                 attached_[root(fold)] = 1;
+                tails_.push_back({fold, at_b});
                 continue;
             }
             ends_.push_back({point, unit(point - back_from(fold, at_b)), fold, at_b});
@@ -319,16 +283,94 @@ class FoldMender {
         }
     }
 
+    // Leaps
+
+    /// Two ends that look at each other over a short gap are one line, whatever the valley between
+    /// them does, if the surface is steep all the way. The nearest pairs first.
+    void leap_gaps() {
+        struct Pair {
+            float apart;
+            std::uint32_t first, second;
+            auto operator<=>(const Pair&) const = default;
+        };
+        std::ranges::sort(ends_, {}, [](const LooseEnd& e) {
+            return std::tuple(e.point.y, e.point.x, e.way.y, e.way.x);
+        });
+        const float most = settings_.longest_leap * width_;
+        std::vector<Pair> pairs;
+        for (std::uint32_t k = 0; k < ends_.size(); ++k) {
+            for (std::uint32_t n = k + 1; n < ends_.size(); ++n) {
+                if (ends_[n].point.y - ends_[k].point.y > most) break;
+                const float apart = length(ends_[n].point - ends_[k].point);
+                if (apart <= most && face_each_other(ends_[k], ends_[n])) {
+                    pairs.push_back({apart, k, n});
+                }
+            }
+        }
+        std::ranges::sort(pairs);
+        for (const auto [apart, k, n] : pairs) {
+            if (ends_[k].reached != kNone || ends_[n].reached != kNone) continue;
+            std::vector<Vec2f> path = curve_between(ends_[k], ends_[n]);
+            if (!is_steep(ends_[k], path)) continue;
+            ends_[k].path = std::move(path);
+            ends_[k].reached = ends_[n].fold;
+            ends_[n].reached = ends_[k].fold;
+            ends_[k].leapt = ends_[n].leapt = true;
+            ends_[n].path.clear();
+        }
+    }
+
+    /// Whether each lies ahead of the other, and has the nearer surface on the same side.
+    bool face_each_other(const LooseEnd& a, const LooseEnd& b) const {
+        constexpr float kAhead = 0.85F;
+        const Vec2f way = unit(b.point - a.point);
+        const Segment& s = lines_[a.fold];
+        const Segment& t = lines_[b.fold];
+        const bool a_front = s.left_in_front == a.at_b;
+        const bool b_front = t.left_in_front == b.at_b;
+        return s.owner == t.owner && a_front != b_front && root(a.fold) != root(b.fold) &&
+               dot(a.way, way) > kAhead && dot(b.way, way) < -kAhead;
+    }
+
+    /// A cubic that leaves both ends as they point, in steps of about the lattice's spacing.
+    std::vector<Vec2f> curve_between(const LooseEnd& a, const LooseEnd& b) const {
+        const float apart = length(b.point - a.point);
+        const int steps = std::max(static_cast<int>(apart / spacing_), 1);
+        const Vec2f p = a.point + a.way * (apart / 3.0F);
+        const Vec2f q = b.point + b.way * (apart / 3.0F);
+        std::vector<Vec2f> path;
+        for (int k = 1; k <= steps; ++k) {
+            const float s = static_cast<float>(k) / static_cast<float>(steps);
+            const float r = 1.0F - s;
+            path.push_back(a.point * (r * r * r) + p * (3.0F * r * r * s) + q * (3.0F * r * s * s) +
+                           b.point * (s * s * s));
+        }
+        return path;
+    }
+
+    bool is_steep(const LooseEnd& end, std::span<const Vec2f> path) {
+        samples_.resize(path.size());
+        if (enter_) {
+            const float reach = settings_.longest_leap * width_;
+            enter_(end.point - Vec2f{reach, reach}, end.point + Vec2f{reach, reach});
+        }
+        sample_(path, samples_);
+        return std::ranges::all_of(samples_, [&](const Sample& sample) {
+            return sample.id == lines_[end.fold].owner &&
+                   facing(sample) <= settings_.most_facing_leapt;
+        });
+    }
+
     // Bridges
 
     void build_bridges() {
         for (LooseEnd& end : ends_) {
-            if (end.reached == kNone) continue;
+            if (end.reached == kNone || end.path.empty()) continue;
             const bool fold = is_fold(end.reached);
             // The other side may have come here first.
             if (fold && root(end.reached) == root(end.fold)) continue;
             bridge(end);
-            if (fold) {
+            if (fold && meets_end(end)) {
                 unite(end.fold, end.reached);
             } else {
                 attached_[root(end.fold)] = 1;
@@ -357,6 +399,14 @@ class FoldMender {
         for (std::size_t n = 0; n + 1 < smooth.size(); ++n) {
             cut_by_cells(end, smooth[n], smooth[n + 1], n + 2 == smooth.size());
         }
+    }
+
+    /// Whether the way on leads to the end of another fold, not to its middle.
+    bool meets_end(const LooseEnd& end) const {
+        const Segment& target = lines_[end.reached];
+        return std::ranges::any_of(std::array{target.a, target.b}, [&](Vec2f tip) {
+            return length(tip - end.path.back()) < spacing_ && meeting_at(tip).size() == 1;
+        });
     }
 
     /// Segments lie within cells and share their ends on the cells' sides.
@@ -407,26 +457,46 @@ class FoldMender {
         for (const LooseEnd& end : ends_) loose[root(end.fold)] = 1;
         const auto is_short = [&](std::uint32_t k) {
             const std::uint32_t group = root(k);
-            const float least =
-                attached_[group] != 0 ? settings_.stub_length : settings_.crumb_length;
-            return loose[group] != 0 && lengths[group] < least * width_;
+            return loose[group] != 0 && lengths[group] < settings_.longest_crumb * width_;
         };
-        const std::vector<std::uint8_t> deep = deep_groups(is_short);
-        const auto is_crumb = [&](std::uint32_t k) { return is_short(k) && deep[root(k)] == 0; };
+        const std::vector<float> depths = depths_of(is_short);
+        const auto is_crumb = [&](std::uint32_t k) {
+            const std::uint32_t group = root(k);
+            const float most = attached_[group] != 0 ? settings_.stub_area : settings_.crumb_area;
+            return is_short(k) && lengths[group] * depths[group] < most * width_ * width_;
+        };
         for (const std::uint32_t k : folds_) {
             if (is_crumb(k)) repairs_.crumbs.push_back(k);
         }
         std::size_t kept = 0;
         for (std::size_t n = 0; n < owners_.size(); ++n) {
-            if (!is_crumb(owners_[n])) repairs_.bridges[kept++] = repairs_.bridges[n];
+            if (is_crumb(owners_[n])) continue;
+            repairs_.bridges[kept] = repairs_.bridges[n];
+            owners_[kept++] = owners_[n];
         }
         repairs_.bridges.resize(kept);
+        owners_.resize(kept);
     }
 
-    /// Which groups have a segment whose two sides are far apart in depth.
+    void drop_doubles() {
+        for (const LooseEnd& end : ends_) {
+            if (end.reached == kNone) tails_.push_back({end.fold, end.at_b});
+        }
+        const auto next_of = [&](FoldTail tail) {
+            const Segment& segment = lines_[tail.fold];
+            const auto meeting = meeting_at(tail.at_b ? segment.a : segment.b);
+            if (meeting.size() != 2) return FoldTail{kNone, false};
+            const Incidence& next = meeting[meeting[0].segment == tail.fold ? 1 : 0];
+            return FoldTail{next.segment, next.at_b};
+        };
+        repairs_.crumbs = FoldDoubles(lines_, folds_, pieces_, repairs_.bridges, owners_)
+                              .drop(tails_, next_of, repairs_.crumbs, settings_.shadow * width_);
+    }
+
+    /// The greatest depth of each group that is asked for, in pixels.
     template <class Ask>
-    std::vector<std::uint8_t> deep_groups(Ask asked) {
-        std::vector<std::uint8_t> deep(lines_.size());
+    std::vector<float> depths_of(Ask asked) {
+        std::vector<float> most(lines_.size());
         std::vector<std::uint32_t> measured;
         std::ranges::copy_if(folds_, std::back_inserter(measured), asked);
         for_each_square(
@@ -434,11 +504,14 @@ class FoldMender {
             [&](std::span<const std::uint32_t> group) {
                 measure_depths(group);
                 for (std::size_t n = 0; n < group.size(); ++n) {
-                    if (deep_[n] != 0) deep[root(group[n])] = 1;
+                    float& depth = most[root(group[n])];
+                    depth = std::max(depth, depths_[n]);
                 }
             });
-        return deep;
+        return most;
     }
+
+    static constexpr float kBottomless = 1e9F;  // another geometry
 
     void measure_depths(std::span<const std::uint32_t> folds) {
         points_.clear();
@@ -450,14 +523,14 @@ class FoldMender {
         }
         samples_.resize(points_.size());
         sample_(points_, samples_);
-        deep_.clear();
+        depths_.clear();
         for (std::size_t n = 0; n < folds.size(); ++n) {
             const Sample& a = samples_[2 * n];
             const Sample& b = samples_[2 * n + 1];
             const float pixel =
                 length_between(points_[2 * n], points_[2 * n + 1], a) / (0.5F * spacing_);
-            const float enough = settings_.crumb_depth * width_ * pixel;
-            deep_.push_back(a.id != b.id || depth_between(a, b) > enough ? 1 : 0);
+            const bool one = a.id == b.id;
+            depths_.push_back(one ? depth_between(a, b) / pixel : kBottomless);
         }
     }
 
@@ -483,16 +556,19 @@ class FoldMender {
     const SampleFunction& sample_;
     const AreaFunction& enter_;
     const FoldSettings& settings_;
-    std::vector<std::uint32_t> folds_;  ///< the self-occlusions among the lines
-    std::vector<std::uint32_t> parents_;
+    std::vector<std::uint32_t> folds_;            ///< the self-occlusions among the lines
+    mutable std::vector<std::uint32_t> parents_;  ///< paths get shorter as they are walked
+    std::vector<std::uint32_t> pieces_;   ///< of each line: its group before any bridge was built
     std::vector<Incidence> incidences_;   ///< of folds at their ends, by place
     std::vector<std::uint8_t> attached_;  ///< a group: it meets another line
     std::optional<SegmentSquares> squares_;
     std::vector<LooseEnd> ends_;
+    /// Ends of folds, by their segments, that may double another one.
+    std::vector<FoldTail> tails_;
     std::vector<LooseEnd*> active_;
     std::vector<Vec2f> centres_, points_;
     std::vector<Sample> samples_;
-    std::vector<std::uint8_t> deep_;  ///< of the folds measured last: sides far apart in depth
+    std::vector<float> depths_;  ///< of the folds measured last, pixels
     FoldRepairs repairs_;
     std::vector<std::uint32_t> owners_;  ///< a bridge: the fold at which it starts
 };

@@ -19,11 +19,19 @@ struct FoldSettings {
     float longest_bridge = 10.0F;  ///< widths of the line
     /// To a line of another kind, past the end of which nothing goes on.
     float longest_to_other = 4.0F;
-    /// A line shorter than this, which meets no other and whose two sides lie less than so many
-    /// widths apart, at a right angle to the surface, is a crumb.
-    float crumb_length = 5.0F;
-    float stub_length = 2.0F;  ///< the same of one that ends on another line on one side
-    float crumb_depth = 1.0F;
+    /// Two ends that look at each other are one line over so many widths, if the sine stays below
+    /// this on the way: about 17 degrees.
+    float longest_leap = 4.0F;
+    float most_facing_leapt = 0.3F;
+    /// A line with a loose end is a crumb if it hides next to nothing: its length times the
+    /// greatest distance of its two sides, at a right angle to the surface, is less than this, in
+    /// squares of its width, and it is not longer than so many widths.
+    float crumb_area = 5.0F;
+    float stub_area = 2.0F;  ///< the same of one that ends on another line on one side
+    float longest_crumb = 10.0F;
+    /// What ends loosely while it runs beside another piece, closer than so many widths, so that
+    /// their strokes touch, is dropped.
+    float shadow = 1.0F;
 };
 
 struct FoldRepairs {
@@ -36,7 +44,8 @@ using AreaFunction = std::function<void(Vec2f low, Vec2f high)>;
 
 /// On a mesh, and on a bumpy surface, the place where a surface hides itself breaks up: between two
 /// of its folds it is merely steep. Joins such pieces of self-occlusions along the steepest way
-/// from one to the next, and finds those that are too short and shallow to mean anything. `lines`
+/// from one to the next, and finds those that are too short and shallow to mean anything, or that
+/// double another one. `lines`
 /// are all of the picture's that are seen directly; `width` is that of a self-occlusion, in pixels.
 /// `enter` may be empty.
 /// The result does not depend on their order.
