@@ -91,8 +91,16 @@ TEST(AmbientOcclusion, OfAProteinIsWithinOneHundredthOfThatByRays) {
     const std::filesystem::path file = data_dir() / "molecules" / "4hhb.pdb";
     if (!std::filesystem::exists(file)) GTEST_SKIP() << "no " << file;
     const Scene scene(read_file(file).objects);
-    EXPECT_LT(error(scene, 1024, 600, 3), 0.0105);
+    EXPECT_LT(error(scene, 1024, 300, 3), 0.01);
     EXPECT_LT(error(scene, 1024, 600, 4), 0.008);
+}
+
+TEST(AmbientOcclusion, OfARibosomeIsWithinOneHundredthOfThatByRays) {
+    const std::filesystem::path file = data_dir() / "molecules" / "1ffk_ribosome50S.cif.gz";
+    if (!std::filesystem::exists(file)) GTEST_SKIP() << "no " << file;
+    const Scene scene(read_file(file).objects);
+    EXPECT_LT(error(scene, 1024, 150, 3), 0.011);
+    EXPECT_LT(error(scene, 1024, 300, 5), 0.008);
 }
 
 TEST(AmbientOcclusion, GetsBetterWithQuality) {

@@ -19,8 +19,10 @@ namespace ink {
 namespace {
 
 /// Nodes along the side of a sphere's grid, which is an octahedron unfolded to a square.
-constexpr std::size_t kBallGrids = 6;
-constexpr int ball_side(std::size_t grid) { return 6 << grid; }
+constexpr std::size_t kBallGrids = 4;
+constexpr int ball_side(std::size_t grid) { return 24 << grid; }
+/// Below this radius on the picture there are fewer pixels than nodes, and each is computed.
+constexpr float kLeastBallGrid = 12.0F;
 /// Nodes that a sphere needs which the picture shows with this radius. What is kept at them varies
 /// slowly over the sphere, so they may be the farther apart the larger it is: on spheres of 8
 /// pixels 2.4, of 100 pixels 7.
@@ -118,7 +120,7 @@ std::uint64_t next_number() {
 
 struct AmbientBake::Impl {
     Impl(const Scene& all, const Tracer& scene_tracer, int quality)
-        : scene(all), directions(4 << (quality - 1)), rays(scene_tracer, 8 << quality) {
+        : scene(all), directions(6 << (quality - 1)), rays(scene_tracer, 8 << quality) {
         std::size_t ball_count = 0;
         std::size_t triangles = 0;
         std::size_t corners = 0;
@@ -149,7 +151,7 @@ struct AmbientBake::Impl {
         BallPacket contacts{};
     };
     static constexpr float kRaise = 0.1F;  ///< keeps quotients small where both are
-    const Surroundings& surroundings(const Sphere& ball, std::size_t ball_number) const;
+    Surroundings& surroundings(const Sphere& ball, std::size_t ball_number) const;
     BallBake& bake_of(const Sphere& ball, std::size_t ball_number) const;
     float on_ball(std::uint32_t object, std::uint32_t primitive, Vec3f n, float radius_px) const;
     float on_triangle(const HitPacket& hits, int lane, const Corners& corners,
@@ -169,8 +171,7 @@ struct AmbientBake::Impl {
     std::uint64_t number = next_number();
 };
 
-const Surroundings& AmbientBake::Impl::surroundings(const Sphere& ball,
-                                                    std::size_t ball_number) const {
+Surroundings& AmbientBake::Impl::surroundings(const Sphere& ball, std::size_t ball_number) const {
     thread_local RecentSurroundings recent;
     auto& entry = recent.entries[ball_number % RecentSurroundings::kEntries];
     if (entry.bake != number || entry.ball != ball_number) {
@@ -185,7 +186,7 @@ AmbientBake::Impl::BallBake& AmbientBake::Impl::bake_of(const Sphere& ball,
                                                         std::size_t ball_number) const {
     return balls.at(ball_number, [&] {
         auto fresh = std::make_unique<BallBake>();
-        if (ball_sky) fresh->contacts = surroundings(ball, ball_number).contacts;
+        if (ball_sky) fresh->contacts = BallSky::contacts(ball, surroundings(ball, ball_number));
         return fresh;
     });
 }
@@ -194,6 +195,9 @@ float AmbientBake::Impl::on_ball(std::uint32_t object, std::uint32_t primitive, 
                                  float radius_px) const {
     const Sphere ball = std::get<Spheres>(scene.objects()[object].shape).at(primitive);
     const std::size_t ball_number = first_ball[object] + primitive;
+    if (ball_sky && radius_px < kLeastBallGrid) {
+        return ball_sky->openness(ball, surroundings(ball, ball_number), n);
+    }
     const std::size_t level = grid_for(ball_nodes(radius_px), kBallGrids, ball_side);
     const int side = ball_side(level);
     const auto nodes = static_cast<std::size_t>((side + 1) * (side + 1));

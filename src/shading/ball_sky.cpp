@@ -15,7 +15,7 @@ namespace {
 
 /// Balls whose surface comes nearer than this many radii to that of the ball that asks are near. Of
 /// a large ball among small ones, radii of the small ones count: it would have all of them near it.
-constexpr float kNear = 1.5F;
+constexpr float kNear = 1.4F;
 /// Those whose surface comes this near touch it or nearly do.
 constexpr float kTouch = 0.3F;
 constexpr float kNoBall = -kInfinity;
@@ -54,25 +54,6 @@ std::vector<Sphere> all_balls(const Scene& scene) {
         for (std::size_t k = 0; k < shape->count(); ++k) balls.push_back(shape->at(k));
     }
     return balls;
-}
-
-/// The nearest sixteen of what comes nearer than kTouch radii.
-void find_contacts(const Sphere& ball, Surroundings& surroundings) {
-    std::vector<std::pair<float, std::size_t>> gaps;
-    for (std::size_t k = 0; k < surroundings.near_count; ++k) {
-        const Sphere other = ball_at(surroundings.near[k / kLanes], static_cast<int>(k % kLanes));
-        const float gap = length(other.centre) - other.radius - ball.radius;
-        if (gap < kTouch * ball.radius) gaps.emplace_back(gap, k);
-    }
-    std::ranges::sort(gaps);
-    for (std::size_t i = 0; i < kLanes; ++i) {
-        const auto lane = static_cast<int>(i);
-        put({}, 0.0F, lane, surroundings.contacts);
-        if (i >= gaps.size()) continue;
-        const std::size_t k = gaps[i].second;
-        const Sphere other = ball_at(surroundings.near[k / kLanes], static_cast<int>(k % kLanes));
-        put(other.centre, other.radius, lane, surroundings.contacts);
-    }
 }
 
 }  // namespace
@@ -119,12 +100,16 @@ BallSky::BallSky(const Scene& scene, const SkyDirections& directions)
 void BallSky::survey(const Sphere& ball, Surroundings& surroundings) const {
     surroundings.near_count = 0;
     gather(ball, levels_.size() - 1, 0, surroundings);
+    surroundings.near.resize(std::max(packets_for(surroundings.near_count), std::size_t{1}));
     for (std::size_t k = surroundings.near_count; k % kLanes != 0; ++k) {
         put({}, 0.0F, static_cast<int>(k % kLanes), surroundings.near.back());
     }
-    find_contacts(ball, surroundings);
+    surroundings.windows.resize(directions_.groups.size());
+    surroundings.seen = surroundings.clear = surroundings.shut = {};
+    surroundings.window_radius = ball.radius * far_.texels / far_.window_stretch(ball.radius);
 }
 
+/// Adds balls that come near to one.
 void BallSky::gather(const Sphere& ball, std::size_t level, std::size_t packet,
                      Surroundings& surroundings) const {
     const float reach = reach_of(ball);
@@ -148,15 +133,31 @@ void BallSky::gather(const Sphere& ball, std::size_t level, std::size_t packet,
             put(to, other.radius, static_cast<int>(k % kLanes), surroundings.near[k / kLanes]);
         }
     }
-    surroundings.near.resize(std::max(packets_for(surroundings.near_count), std::size_t{1}));
+}
+
+BallPacket BallSky::contacts(const Sphere& ball, const Surroundings& surroundings) {
+    std::vector<std::pair<float, std::size_t>> gaps;
+    for (std::size_t k = 0; k < surroundings.near_count; ++k) {
+        const Sphere other = ball_at(surroundings.near[k / kLanes], static_cast<int>(k % kLanes));
+        const float gap = length(other.centre) - other.radius - ball.radius;
+        if (gap < kTouch * ball.radius) gaps.emplace_back(gap, k);
+    }
+    std::ranges::sort(gaps);
+    BallPacket found{};
+    for (std::size_t i = 0; i < std::min(gaps.size(), std::size_t{kLanes}); ++i) {
+        const std::size_t k = gaps[i].second;
+        const Sphere other = ball_at(surroundings.near[k / kLanes], static_cast<int>(k % kLanes));
+        put(other.centre, other.radius, static_cast<int>(i), found);
+    }
+    return found;
 }
 
 float BallSky::reach_of(const Sphere& ball) const {
     return ball.radius + kNear * std::min(ball.radius, 2.0F * usual_radius_);
 }
 
-float BallSky::openness(const Sphere& ball, const Surroundings& surroundings, Vec3f n) const {
-    return ball_kernels::openness(directions_, far_, surroundings, ball, reach_of(ball), n);
+float BallSky::openness(const Sphere& ball, Surroundings& surroundings, Vec3f n) const {
+    return ball_kernels::openness({directions_, far_, ball, reach_of(ball)}, surroundings, n);
 }
 
 float BallSky::contact_openness(const BallPacket& contacts, float radius, Vec3f n) {

@@ -11,22 +11,22 @@
 
 namespace ink {
 
-/// Sixteen balls, relative to some point.
-struct BallPacket {
-    Lanes<float> x, y, z, radius;
-};
-
-/// The balls near to one.
+/// What there is about a ball.
 struct Surroundings {
-    std::vector<BallPacket> near;  ///< relative to its centre; unused lanes have radius 0
+    std::vector<BallPacket> near;  ///< relative to its centre; unused lanes have no radius
     std::size_t near_count = 0;
-    BallPacket contacts;  ///< those that touch it or nearly do, as far as there is room
+    /// What is far, of each group of directions, as soon as it has been `seen`.
+    std::vector<FarWindow> windows;
+    GroupBits seen;
+    GroupBits clear, shut;  ///< those where all is free, or nothing
+    float window_radius;    ///< the ball's, in texels of the windows
 };
 
 /// The spheres of a scene as what hides the sky from each other.
 ///
 /// Near balls are looked at from each point of the surface, as discs on the sky in closed form,
-/// with edges as soft as directions are apart. What begins farther away is looked up in maps.
+/// with edges as soft as directions are apart. What begins farther away is looked up in maps, of
+/// which each ball has the part that it sees through.
 class BallSky {
   public:
     BallSky(const Scene& scene, const SkyDirections& directions);
@@ -35,7 +35,9 @@ class BallSky {
     void survey(const Sphere& ball, Surroundings& surroundings) const;
     /// The share of the sky that lies open above the point of the ball with normal `n`, weighted by
     /// the cosine to it.
-    float openness(const Sphere& ball, const Surroundings& surroundings, Vec3f n) const;
+    float openness(const Sphere& ball, Surroundings& surroundings, Vec3f n) const;
+    /// The nearest sixteen balls that touch one or nearly do.
+    static BallPacket contacts(const Sphere& ball, const Surroundings& surroundings);
     /// The product of what each of the contacts alone would leave open: it has the steep fall of
     /// openness towards them, so that what remains varies slowly.
     static float contact_openness(const BallPacket& contacts, float radius, Vec3f n);

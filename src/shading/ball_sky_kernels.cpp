@@ -5,6 +5,8 @@
 #include <bit>
 #include <cmath>
 
+#include "shading/far_sky_kernels.h"
+
 // Everything between the two namespace macros is built once for each instruction set.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "shading/ball_sky_kernels.cpp"
@@ -19,7 +21,6 @@ namespace hn = hwy::HWY_NAMESPACE;
 using Floats = hn::CappedTag<float, kLanes>;
 constexpr Floats kFloats;
 constexpr int kStep = static_cast<int>(hn::MaxLanes(Floats()));
-constexpr LaneBits kAll = (1U << kLanes) - 1U;
 
 HWY_INLINE auto load(const Lanes<float>& lanes, int first) {
     return hn::Load(kFloats, lanes.data() + first);
@@ -58,235 +59,278 @@ LaneBits find_within(const BallPacket& balls, Vec3f point, float reach) {
     return found;
 }
 
-/// Balls as seen from a point: the discs that they are on the sky.
+/// Near balls that rise above the horizon of a point, as the discs that they are on its sky, with
+/// soft edges: the share of a direction's cell that one covers is slope * (along - edge) + 1/2,
+/// clamped.
 struct Discs {
-    Lanes<float> x, y, z;  ///< towards the centre, not of unit length
-    Lanes<float> radius;
-    Lanes<float> tangent;   ///< length of the tangent; 0 if the point is inside
-    Lanes<float> distance;  ///< of the centre
-    LaneBits around = 0;    ///< balls that hold the point
+    std::vector<Lanes<float>> x, y, z;  ///< towards the centre, not of unit length
+    std::vector<Lanes<float>> radius;
+    std::vector<Lanes<float>> tangent;  ///< length of the tangent; 0 if the point is inside
+    std::vector<Lanes<float>> edge, slope;
+    std::size_t count = 0;
+
+    std::size_t packets() const { return (count + kLanes - 1) / kLanes; }
+    void make_room(std::size_t balls) {
+        const std::size_t most = balls / kLanes + 2;
+        if (x.size() >= most) return;
+        for (auto* field : {&x, &y, &z, &radius, &tangent, &edge, &slope}) field->resize(most);
+    }
 };
 
-HWY_INLINE void see(const BallPacket& balls, Vec3f point, Discs& discs) {
-    discs.around = 0;
-    for (int i = 0; i < kLanes; i += kStep) {
-        const auto x = hn::Sub(load(balls.x, i), set(point.x));
-        const auto y = hn::Sub(load(balls.y, i), set(point.y));
-        const auto z = hn::Sub(load(balls.z, i), set(point.z));
-        const auto radius = load(balls.radius, i);
-        const auto squared = sum_of_products(x, x, y, y, z, z);
-        const auto beyond = hn::Sub(squared, hn::Mul(radius, radius));
-        store(x, discs.x, i);
-        store(y, discs.y, i);
-        store(z, discs.z, i);
-        store(radius, discs.radius, i);
-        store(hn::Sqrt(hn::Max(beyond, hn::Zero(kFloats))), discs.tangent, i);
-        store(hn::Sqrt(squared), discs.distance, i);
-        discs.around |= bits(hn::Le(beyond, hn::Zero(kFloats)), i);
-    }
-}
-
-/// Which discs reach into the cone about `axis`: the angle between a disc's middle and the axis is
-/// below the sum of half its size and of the cone's.
-HWY_INLINE LaneBits reach_into(const Discs& discs, Vec3f axis, float cos, float sin) {
-    LaneBits found = 0;
-    for (int i = 0; i < kLanes; i += kStep) {
-        const auto along = sum_of_products(set(axis.x), load(discs.x, i), set(axis.y),
-                                           load(discs.y, i), set(axis.z), load(discs.z, i));
-        const auto least = hn::Sub(hn::Mul(load(discs.tangent, i), set(cos)),
-                                   hn::Mul(load(discs.radius, i), set(sin)));
-        found |= bits(hn::Gt(along, least), i);
-    }
-    return found;
-}
-
-/// The balls that rise above the horizon, close together.
-HWY_INLINE std::size_t rise(const Surroundings& surroundings, float radius, Vec3f n,
-                            std::vector<BallPacket>& risen) {
+/// Finds those that rise, close together, as seen from the point n * radius.
+HWY_INLINE void rise(const Surroundings& surroundings, float radius, Vec3f n, Discs& discs) {
+    discs.make_room(surroundings.near_count);
+    float* to_x = discs.x[0].data();
+    float* to_y = discs.y[0].data();
+    float* to_z = discs.z[0].data();
+    float* to_radius = discs.radius[0].data();
     std::size_t count = 0;
     for (std::size_t k = 0; k * kLanes < surroundings.near_count; ++k) {
         const BallPacket& balls = surroundings.near[k];
-        LaneBits above = 0;
         for (int i = 0; i < kLanes; i += kStep) {
-            const auto up = sum_of_products(set(n.x), load(balls.x, i), set(n.y), load(balls.y, i),
-                                            set(n.z), load(balls.z, i));
-            const auto top = hn::Add(up, load(balls.radius, i));
-            const auto used = hn::Gt(load(balls.radius, i), hn::Zero(kFloats));
-            above |= bits(hn::And(hn::Gt(top, set(radius)), used), i);
-        }
-        for (; above != 0; above &= above - 1) {
-            const int from = std::countr_zero(above);
-            const auto to = static_cast<int>(count % kLanes);
-            if (count / kLanes == risen.size()) risen.emplace_back();
-            BallPacket& packet = risen[count / kLanes];
-            packet.x[to] = balls.x[from];
-            packet.y[to] = balls.y[from];
-            packet.z[to] = balls.z[from];
-            packet.radius[to] = balls.radius[from];
-            ++count;
+            const auto x = load(balls.x, i);
+            const auto y = load(balls.y, i);
+            const auto z = load(balls.z, i);
+            const auto size = load(balls.radius, i);
+            const auto up = sum_of_products(set(n.x), x, set(n.y), y, set(n.z), z);
+            const auto above =
+                hn::And(hn::Gt(hn::Add(up, size), set(radius)), hn::Gt(size, hn::Zero(kFloats)));
+            hn::CompressBlendedStore(hn::Sub(x, set(n.x * radius)), above, kFloats, to_x + count);
+            hn::CompressBlendedStore(hn::Sub(y, set(n.y * radius)), above, kFloats, to_y + count);
+            hn::CompressBlendedStore(hn::Sub(z, set(n.z * radius)), above, kFloats, to_z + count);
+            count += hn::CompressBlendedStore(size, above, kFloats, to_radius + count);
         }
     }
     // Far below any horizon.
     for (std::size_t k = count; k % kLanes != 0; ++k) {
-        BallPacket& packet = risen[k / kLanes];
+        to_x[k] = to_y[k] = to_z[k] = to_radius[k] = 0.0F;
+    }
+    discs.count = count;
+}
+
+HWY_INLINE void see(float spacing, Discs& discs) {
+    for (std::size_t k = 0; k < discs.packets(); ++k) {
+        for (int i = 0; i < kLanes; i += kStep) {
+            const auto x = load(discs.x[k], i);
+            const auto y = load(discs.y[k], i);
+            const auto z = load(discs.z[k], i);
+            const auto radius = load(discs.radius[k], i);
+            const auto squared = sum_of_products(x, x, y, y, z, z);
+            const auto beyond = hn::Sub(squared, hn::Mul(radius, radius));
+            const auto tangent = hn::Sqrt(hn::Max(beyond, hn::Zero(kFloats)));
+            // The mean of the cosine over a spacing about the edge is less than that at the edge.
+            const auto edge = hn::Mul(tangent, set(1.0F + spacing * spacing / 24.0F));
+            const auto least = hn::Min(radius, hn::Sqrt(squared));
+            const auto width = hn::Max(hn::Mul(least, set(spacing)), set(1e-20F));
+            store(tangent, discs.tangent[k], i);
+            store(edge, discs.edge[k], i);
+            store(hn::Div(set(1.0F), width), discs.slope[k], i);
+        }
+    }
+}
+
+/// What is left of a point's sky: the groups that reach above the horizon, and the cosines of their
+/// directions, as far as they are open.
+struct SkyLeft {
+    GroupBits above;
+    std::vector<Lanes<float>> left;
+};
+
+template <class Body>
+HWY_INLINE void for_groups(std::uint64_t groups, std::size_t word, const Body& body) {
+    for (; groups != 0; groups &= groups - 1) {
+        body(word * kGroupsAWord + static_cast<std::size_t>(std::countr_zero(groups)));
+    }
+}
+
+/// Sixteen groups of a word each, by a test of their axes.
+template <class Test>
+HWY_INLINE std::uint64_t find_groups(const SkyDirections& directions, std::size_t word,
+                                     const Test& test) {
+    constexpr std::size_t kPackets = kGroupsAWord / kLanes;
+    const std::size_t first = word * kPackets;
+    const std::size_t count = std::min(kPackets, directions.axes.size() - first);
+    std::uint64_t found = 0;
+    for (std::size_t k = 0; k < count; ++k) {
+        const SkyDirections::Axes& axes = directions.axes[first + k];
+        for (int i = 0; i < kLanes; i += kStep) {
+            found |= std::uint64_t{bits(test(axes, i), i)} << (k * kLanes);
+        }
+    }
+    return found;
+}
+
+/// The whole sky above the horizon. `all` is the sum of its cosines, in lanes.
+HWY_INLINE void open_all(const SkyDirections& directions, Vec3f n, SkyLeft& sky,
+                         Lanes<float>& all) {
+    if (sky.left.size() < directions.groups.size()) sky.left.resize(directions.groups.size());
+    for (std::size_t word = 0; word < directions.words(); ++word) {
+        const auto above = find_groups(directions, word, [&](const auto& axes, int i) {
+            const auto up = sum_of_products(load(axes.x, i), set(n.x), load(axes.y, i), set(n.y),
+                                            load(axes.z, i), set(n.z));
+            return hn::Gt(up, hn::Mul(load(axes.sin, i), set(-0.5F)));
+        });
+        sky.above[word] = above & directions.used(word);
+    }
+    const SkyDirections::Group* groups = directions.groups.data();
+    Lanes<float>* left = sky.left.data();
+    for (int i = 0; i < kLanes; i += kStep) {
+        auto sum = hn::Zero(kFloats);
+        for (std::size_t word = 0; word < directions.words(); ++word) {
+            for_groups(sky.above[word], word, [&](std::size_t g) {
+                const SkyDirections::Group& group = groups[g];
+                const auto up = sum_of_products(load(group.x, i), set(n.x), load(group.y, i),
+                                                set(n.y), load(group.z, i), set(n.z));
+                const auto cosine = hn::Max(up, hn::Zero(kFloats));
+                store(cosine, left[g], i);
+                sum = hn::Add(sum, cosine);
+            });
+        }
+        store(sum, all, i);
+    }
+}
+
+/// Groups that a disc reaches into: the angle between its middle and the axis is below the sum of
+/// half its size and of the cone's. A ball that holds the point reaches everywhere.
+HWY_INLINE std::uint64_t reached(const SkyDirections& directions, std::size_t word, Vec3f to,
+                                 float tangent, float radius) {
+    if (tangent <= 0.0F) return ~std::uint64_t{0};
+    return find_groups(directions, word, [&](const auto& axes, int i) {
+        const auto along = sum_of_products(load(axes.x, i), set(to.x), load(axes.y, i), set(to.y),
+                                           load(axes.z, i), set(to.z));
+        const auto least = hn::Sub(hn::Mul(load(axes.wide_cos, i), set(tangent)),
+                                   hn::Mul(load(axes.wide_sin, i), set(radius)));
+        return hn::Gt(along, least);
+    });
+}
+
+/// Takes the discs out of it.
+HWY_INLINE void hide(const SkyDirections& directions, const Discs& discs, SkyLeft& sky) {
+    const SkyDirections::Group* all = directions.groups.data();
+    Lanes<float>* left = sky.left.data();
+    for (std::size_t k = 0; k < discs.count; ++k) {
+        const std::size_t packet = k / kLanes;
         const auto lane = static_cast<int>(k % kLanes);
-        packet.x[lane] = packet.y[lane] = packet.z[lane] = packet.radius[lane] = 0.0F;
-    }
-    return count;
-}
-
-/// Discs with soft edges: the share of a direction's cell that one covers is
-/// slope * (along - edge) + 1/2, clamped.
-struct SoftDiscs : Discs {
-    Lanes<float> edge, slope;
-    LaneBits used = 0;
-};
-
-HWY_INLINE void soften(float spacing, SoftDiscs& discs) {
-    for (int i = 0; i < kLanes; i += kStep) {
-        // The mean of the cosine over a spacing about the edge is less than that at the edge.
-        const auto edge = hn::Mul(load(discs.tangent, i), set(1.0F + spacing * spacing / 24.0F));
-        const auto least = hn::Min(load(discs.radius, i), load(discs.distance, i));
-        const auto width = hn::Max(hn::Mul(least, set(spacing)), set(1e-20F));
-        store(edge, discs.edge, i);
-        store(hn::Div(set(1.0F), width), discs.slope, i);
-    }
-}
-
-/// What near balls leave open above a point of a ball.
-class NearSky {
-  public:
-    NearSky(const SkyDirections& directions, const Surroundings& surroundings, float radius,
-            Vec3f n)
-        : n_(n) {
-        thread_local std::vector<BallPacket> risen;
-        thread_local std::vector<SoftDiscs> discs;
-        const std::size_t count = rise(surroundings, radius, n, risen);
-        packets_ = (count + kLanes - 1) / kLanes;
-        if (discs.size() < packets_) discs.resize(packets_);
-        discs_ = discs.data();
-        for (std::size_t k = 0; k < packets_; ++k) {
-            SoftDiscs& seen = discs[k];
-            see(risen[k], n * radius, seen);
-            soften(directions.spacing, seen);
-            const std::size_t used = std::min<std::size_t>(count - k * kLanes, kLanes);
-            seen.used = (1U << static_cast<unsigned>(used)) - 1U;
-        }
-    }
-
-    static bool above(const SkyDirections::Group& group, Vec3f n) {
-        return dot(group.axis, n) > -group.sin;
-    }
-
-    /// Cosines to the normal, and their parts that are open; false if none is.
-    bool look(const SkyDirections::Group& group, Lanes<float>& weight, Lanes<float>& open) const {
-        thread_local std::vector<LaneBits> reaching;
-        if (reaching.size() < packets_) reaching.resize(packets_);
-        for (std::size_t k = 0; k < packets_; ++k) {
-            const SoftDiscs& seen = discs_[k];
-            reaching[k] =
-                (reach_into(seen, group.axis, group.wide_cos, group.wide_sin) | seen.around) &
-                seen.used;
-        }
-        bool any = false;
-        for (int i = 0; i < kLanes; i += kStep) {
-            const auto x = load(group.x, i);
-            const auto y = load(group.y, i);
-            const auto z = load(group.z, i);
-            const auto up = sum_of_products(x, set(n_.x), y, set(n_.y), z, set(n_.z));
-            auto left = hn::Max(up, hn::Zero(kFloats));
-            store(left, weight, i);
-            for (std::size_t k = 0; k < packets_; ++k) {
-                const SoftDiscs& seen = discs_[k];
-                for (LaneBits balls = reaching[k]; balls != 0; balls &= balls - 1) {
-                    const int ball = std::countr_zero(balls);
-                    const auto along = sum_of_products(x, set(seen.x[ball]), y, set(seen.y[ball]),
-                                                       z, set(seen.z[ball]));
-                    const auto past = hn::Sub(along, set(seen.edge[ball]));
-                    const auto bare = hn::Sub(set(0.5F), hn::Mul(past, set(seen.slope[ball])));
-                    left = hn::Mul(left, hn::Min(hn::Max(bare, hn::Zero(kFloats)), set(1.0F)));
+        const Vec3f to{discs.x[packet][lane], discs.y[packet][lane], discs.z[packet][lane]};
+        const float tangent = discs.tangent[packet][lane];
+        const float radius = discs.radius[packet][lane];
+        const auto x = set(to.x);
+        const auto y = set(to.y);
+        const auto z = set(to.z);
+        const auto edge = set(discs.edge[packet][lane]);
+        const auto slope = set(discs.slope[packet][lane]);
+        for (std::size_t word = 0; word < directions.words(); ++word) {
+            const std::uint64_t groups =
+                sky.above[word] & reached(directions, word, to, tangent, radius);
+            for_groups(groups, word, [&](std::size_t g) {
+                const SkyDirections::Group& group = all[g];
+                for (int i = 0; i < kLanes; i += kStep) {
+                    const auto along = sum_of_products(load(group.x, i), x, load(group.y, i), y,
+                                                       load(group.z, i), z);
+                    const auto past = hn::Mul(hn::Sub(along, edge), slope);
+                    const auto bare = hn::Max(hn::Sub(set(0.5F), past), hn::Zero(kFloats));
+                    store(hn::Mul(load(left[g], i), hn::Min(bare, set(1.0F))), left[g], i);
                 }
-            }
-            store(left, open, i);
-            any |= !hn::AllFalse(kFloats, hn::Gt(left, hn::Zero(kFloats)));
+            });
         }
-        return any;
-    }
-
-  private:
-    Vec3f n_;
-    const SoftDiscs* discs_;
-    std::size_t packets_ = 0;
-};
-
-/// How much of each direction is free of what begins farther away than `reach`, blended between
-/// the texels about the way of the ray.
-HWY_INLINE void look_far(const FarSky& far, const SkyDirections::Group& group, std::size_t number,
-                         const Sphere& ball, float reach, Vec3f n, Lanes<float>& open) {
-    constexpr int kSide = FarSky::kSide;
-    constexpr hn::Rebind<std::int32_t, Floats> kInts;
-    constexpr hn::Rebind<std::uint32_t, Floats> kIndices;
-    const FarSky::Frame& frame = far.frames[number];
-    const Vec3f p = ball.centre + n * ball.radius;
-    const auto* maps = reinterpret_cast<const std::uint32_t*>(
-        far.maps.data() + number * kLanes * std::size_t{kSide} * kSide);
-    for (int i = 0; i < kLanes; i += kStep) {
-        const auto place = [&](const auto& x, const auto& y, const auto& z) {
-            const auto along =
-                sum_of_products(load(x, i), set(p.x), load(y, i), set(p.y), load(z, i), set(p.z));
-            const auto at = hn::Add(hn::Mul(along, set(far.texels)), set(0.5F * (kSide - 1)));
-            return hn::Min(hn::Max(at, hn::Zero(kFloats)), set(kSide - 1.001F));
-        };
-        const auto x = place(frame.right_x, frame.right_y, frame.right_z);
-        const auto y = place(frame.up_x, frame.up_y, frame.up_z);
-        const auto column = hn::ConvertTo(kInts, x);
-        const auto row = hn::ConvertTo(kInts, y);
-        const auto a = hn::Sub(x, hn::ConvertTo(kFloats, column));
-        const auto b = hn::Sub(y, hn::ConvertTo(kFloats, row));
-        const auto up = sum_of_products(load(group.x, i), set(ball.centre.x), load(group.y, i),
-                                        set(ball.centre.y), load(group.z, i), set(ball.centre.z));
-        const auto most = hn::Mul(hn::Add(up, set(reach - far.lowest)), set(far.heights));
-        // Two texels of 16 bits at once.
-        const auto map = hn::Mul(hn::Add(hn::Iota(kInts, 0), hn::Set(kInts, i)),
-                                 hn::Set(kInts, kSide * kSide * 2));
-        const auto offset =
-            hn::Add(map, hn::ShiftLeft<1>(hn::Add(hn::Mul(row, hn::Set(kInts, kSide)), column)));
-        const auto free = [&](auto steps) {
-            const auto height = hn::ConvertTo(kFloats, hn::BitCast(kInts, steps));
-            return hn::IfThenElseZero(hn::Le(height, most), set(1.0F));
-        };
-        const auto row_free = [&](auto offsets) {
-            const auto pair = hn::GatherOffset(kIndices, maps, offsets);
-            const auto first = free(hn::And(pair, hn::Set(kIndices, 0xFFFFU)));
-            const auto second = free(hn::ShiftRight<16>(pair));
-            return hn::Add(first, hn::Mul(a, hn::Sub(second, first)));
-        };
-        const auto top = row_free(offset);
-        const auto bottom = row_free(hn::Add(offset, hn::Set(kInts, kSide * 2)));
-        const auto both = hn::Add(top, hn::Mul(b, hn::Sub(bottom, top)));
-        store(hn::Mul(load(open, i), both), open, i);
     }
 }
 
-float find_openness(const SkyDirections& directions, const FarSky& far,
-                    const Surroundings& surroundings, const Sphere& ball, float reach, Vec3f n) {
-    const NearSky sky(directions, surroundings, ball.radius, n);
-    Lanes<float> open_sum{};
-    Lanes<float> sum{};
-    for (std::size_t g = 0; g < directions.groups.size(); ++g) {
-        const SkyDirections::Group& group = directions.groups[g];
-        if (!NearSky::above(group, n)) continue;
-        Lanes<float> weight;
-        Lanes<float> open;
-        const bool any = sky.look(group, weight, open);
-        for (int i = 0; i < kLanes; i += kStep) {
-            store(hn::Add(load(sum, i), load(weight, i)), sum, i);
+/// How much of directions i and the following of a group is free of what begins far away, blended
+/// between the texels about the way of the ray; `offset` is the point's from the ball's centre, in
+/// texels of the windows.
+HWY_INLINE auto look_far(const FarSky::Frame& frame, const FarWindow& window, int i, Vec3f offset) {
+    constexpr hn::Rebind<std::uint32_t, Floats> kBits;
+    constexpr hn::Repartition<std::uint64_t, Floats> kMaps;
+    // Added, it leaves the whole part of a small number, rounded down, in the last bits.
+    constexpr float kWhole = 12582912.0F;
+    const auto place = [&](const auto& middle, const auto& x, const auto& y, const auto& z) {
+        const auto along = sum_of_products(load(x, i), set(offset.x), load(y, i), set(offset.y),
+                                           load(z, i), set(offset.z));
+        return hn::Add(along, load(middle, i));
+    };
+    const auto x = place(window.x, frame.right_x, frame.right_y, frame.right_z);
+    const auto y = place(window.y, frame.up_x, frame.up_y, frame.up_z);
+    const auto column = hn::Add(hn::Sub(x, set(0.5F)), set(kWhole));
+    const auto row = hn::Add(hn::Sub(y, set(0.5F)), set(kWhole));
+    const auto a = hn::Sub(x, hn::Sub(column, set(kWhole)));
+    const auto b = hn::Sub(y, hn::Sub(row, set(kWhole)));
+    const auto number =
+        hn::And(hn::Add(hn::ShiftLeft<3>(hn::BitCast(kBits, row)), hn::BitCast(kBits, column)),
+                hn::Set(kBits, kWindowSide * kWindowSide - 1));
+    const std::uint64_t* maps = window.free.data() + i;
+    const auto low = hn::Shr(hn::Load(kMaps, maps), hn::PromoteTo(kMaps, hn::LowerHalf(number)));
+    const auto high =
+        hn::Shr(hn::Load(kMaps, maps + hn::Lanes(kMaps)),
+                hn::PromoteTo(kMaps, hn::UpperHalf(hn::Half<decltype(kBits)>(), number)));
+    const auto found = hn::ConcatEven(kBits, hn::BitCast(kBits, high), hn::BitCast(kBits, low));
+    const auto ab = hn::Mul(a, b);
+    const auto share = [&](std::uint32_t bit, auto weight) {
+        const auto is_free = hn::TestBit(found, hn::Set(kBits, bit));
+        return hn::IfThenElseZero(hn::RebindMask(kFloats, is_free), weight);
+    };
+    const auto right = hn::Sub(a, ab);
+    const auto below = hn::Sub(b, ab);
+    const auto left = hn::Sub(hn::Sub(set(1.0F), a), below);
+    const auto top = hn::Add(share(1U, left), share(2U, right));
+    const auto bottom = hn::Add(share(1U << 8U, below), share(1U << 9U, ab));
+    return hn::Add(top, bottom);
+}
+
+struct Scratch {
+    Discs discs;
+    SkyLeft sky;
+};
+
+/// Out of line: the address of what is a thread's own would be asked for in every loop.
+HWY_NOINLINE Scratch& own_scratch() {
+    thread_local Scratch scratch;
+    return scratch;
+}
+
+/// Finds what is far in a group.
+void look_out(const SkyView& view, std::size_t g, Surroundings& surroundings) {
+    FarWindow& window = surroundings.windows[g];
+    far_kernels::look_out(view.far, g, view.ball, view.reach, window);
+    const auto all = [&](std::uint64_t value) {
+        return std::ranges::all_of(window.free, [&](std::uint64_t free) { return free == value; });
+    };
+    const std::uint64_t bit = std::uint64_t{1} << (g % kGroupsAWord);
+    surroundings.seen[g / kGroupsAWord] |= bit;
+    if (all(~std::uint64_t{0})) surroundings.clear[g / kGroupsAWord] |= bit;
+    if (all(0)) surroundings.shut[g / kGroupsAWord] |= bit;
+}
+
+float find_openness(const SkyView& view, Surroundings& surroundings, Vec3f n) {
+    const SkyDirections& directions = view.directions;
+    Scratch& scratch = own_scratch();
+    SkyLeft& sky = scratch.sky;
+    rise(surroundings, view.ball.radius, n, scratch.discs);
+    see(directions.spacing, scratch.discs);
+    Lanes<float> sum;
+    open_all(directions, n, sky, sum);
+    for (std::size_t word = 0; word < directions.words(); ++word) {
+        sky.above[word] &= ~surroundings.shut[word];
+    }
+    hide(directions, scratch.discs, sky);
+    const Vec3f offset = n * surroundings.window_radius;
+    Lanes<float> open_sum;
+    for (int i = 0; i < kLanes; i += kStep) {
+        auto open = hn::Zero(kFloats);
+        for (std::size_t word = 0; word < directions.words(); ++word) {
+            for_groups(sky.above[word], word, [&](std::size_t g) {
+                auto left = load(sky.left[g], i);
+                if (hn::AllFalse(kFloats, hn::Gt(left, hn::Zero(kFloats)))) return;
+                const std::uint64_t bit = std::uint64_t{1} << (g % kGroupsAWord);
+                if ((surroundings.seen[word] & bit) == 0) look_out(view, g, surroundings);
+                if ((surroundings.clear[word] & bit) == 0) {
+                    left = hn::Mul(
+                        left, look_far(view.far.frames[g], surroundings.windows[g], i, offset));
+                }
+                open = hn::Add(open, left);
+            });
         }
-        if (!any) continue;
-        look_far(far, group, g, ball, reach, n, open);
-        for (int i = 0; i < kLanes; i += kStep) {
-            store(hn::Add(load(open_sum, i), load(open, i)), open_sum, i);
-        }
+        store(open, open_sum, i);
     }
     // In one order on every machine.
     float open = 0.0F;
@@ -296,74 +340,6 @@ float find_openness(const SkyDirections& directions, const FarSky& far,
         all += sum[i];
     }
     return std::min(open / all, 1.0F);
-}
-
-/// A ball on a map, in texels, and the heights at which it begins as seen from the map's two sides.
-struct Spot {
-    float x, y, radius;
-    int left, right, top, bottom;
-    float front, back;
-};
-
-template <class Tag>
-HWY_INLINE void raise_spot(Tag tag, const Spot& spot, float* front, float* back) {
-    const auto lanes = hn::Iota(tag, 0);
-    const auto in_front = hn::Set(tag, spot.front);
-    const auto behind = hn::Set(tag, spot.back);
-    for (int row = spot.top; row <= spot.bottom; ++row) {
-        const float dy = static_cast<float>(row) + 0.5F - spot.y;
-        const auto most = hn::Set(tag, spot.radius * spot.radius - dy * dy);
-        for (int i = spot.left; i <= spot.right; i += static_cast<int>(hn::Lanes(tag))) {
-            const auto dx = hn::Add(lanes, hn::Set(tag, static_cast<float>(i) + 0.5F - spot.x));
-            const auto covered = hn::Lt(hn::Mul(dx, dx), most);
-            float* a = front + row * FarSky::kSide + i;
-            float* b = back + row * FarSky::kSide + i;
-            const auto before_a = hn::LoadU(tag, a);
-            const auto before_b = hn::LoadU(tag, b);
-            hn::StoreU(hn::Max(before_a, hn::IfThenElseZero(covered, in_front)), tag, a);
-            hn::StoreU(hn::Max(before_b, hn::IfThenElseZero(covered, behind)), tag, b);
-        }
-    }
-}
-
-void raise_maps(const FarSky& sky, std::span<const Sphere> balls, Vec3f towards, float* front,
-                float* back) {
-    constexpr int kSide = FarSky::kSide;
-    Vec3f right;
-    Vec3f up;
-    make_basis(towards, right, up);
-    const auto texel = [](float v) { return std::clamp(static_cast<int>(v), 0, kSide - 1); };
-    // Balls that follow each other mostly lie side by side, and what was just written to texels is
-    // not to be read at once: so they come in another order.
-    constexpr std::size_t kStride = 1009;
-    for (std::size_t first = 0; first < std::min(kStride, balls.size()); ++first) {
-        for (std::size_t k = first; k < balls.size(); k += kStride) {
-            const Sphere& ball = balls[k];
-            const float x = dot(ball.centre, right) * sky.texels + 0.5F * kSide;
-            const float y = dot(ball.centre, up) * sky.texels + 0.5F * kSide;
-            const float radius = ball.radius * sky.texels;
-            // A ball begins, in the mean over its disc, this much nearer than its centre.
-            const float begin = -ball.radius * (2.0F / 3.0F);
-            const float height = dot(ball.centre, towards);
-            const Spot spot{x,
-                            y,
-                            radius,
-                            texel(x - radius + 0.5F),
-                            texel(x + radius - 0.5F),
-                            texel(y - radius + 0.5F),
-                            texel(y + radius - 0.5F),
-                            (begin + height - sky.lowest) * sky.heights,
-                            (begin - height - sky.lowest) * sky.heights};
-            const int width = spot.right - spot.left + 1;
-            if (width <= 4) {
-                raise_spot(hn::CappedTag<float, 4>(), spot, front, back);
-            } else if (width <= 8) {
-                raise_spot(hn::CappedTag<float, 8>(), spot, front, back);
-            } else {
-                raise_spot(kFloats, spot, front, back);
-            }
-        }
-    }
 }
 
 /// Within 7e-5: Abramowitz and Stegun 4.4.45.
@@ -427,21 +403,14 @@ namespace ink::ball_kernels {
 
 HWY_EXPORT(find_within);
 HWY_EXPORT(find_openness);
-HWY_EXPORT(raise_maps);
 HWY_EXPORT(find_contact_openness);
 
 LaneBits within(const BallPacket& balls, Vec3f point, float reach) {
     return HWY_DYNAMIC_DISPATCH(find_within)(balls, point, reach);
 }
 
-void raise(const FarSky& sky, std::span<const Sphere> balls, Vec3f towards, std::span<float> front,
-           std::span<float> back) {
-    HWY_DYNAMIC_DISPATCH(raise_maps)(sky, balls, towards, front.data(), back.data());
-}
-
-float openness(const SkyDirections& directions, const FarSky& far, const Surroundings& surroundings,
-               const Sphere& ball, float reach, Vec3f n) {
-    return HWY_DYNAMIC_DISPATCH(find_openness)(directions, far, surroundings, ball, reach, n);
+float openness(const SkyView& view, Surroundings& surroundings, Vec3f n) {
+    return HWY_DYNAMIC_DISPATCH(find_openness)(view, surroundings, n);
 }
 
 float contact_openness(const BallPacket& contacts, float radius, Vec3f n) {

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <span>
 
 #include "shading/ball_sky.h"
 
@@ -13,14 +12,16 @@ using LaneBits = std::uint32_t;
 /// Which balls of a packet come nearer than `reach` to a point.
 LaneBits within(const BallPacket& balls, Vec3f point, float reach);
 
-/// Raises maps of FarSky, in steps of height, to the balls that cover the middles of their texels:
-/// `front` as seen from `towards`, `back` from the opposite direction.
-void raise(const FarSky& sky, std::span<const Sphere> balls, Vec3f towards, std::span<float> front,
-           std::span<float> back);
+/// The sky above a ball; what begins farther than `reach` from its centre is far.
+struct SkyView {
+    const SkyDirections& directions;
+    const FarSky& far;
+    const Sphere& ball;
+    float reach;
+};
 
-/// BallSky::openness; what begins farther than `reach` from the ball's centre is far.
-float openness(const SkyDirections& directions, const FarSky& far, const Surroundings& surroundings,
-               const Sphere& ball, float reach, Vec3f n);
+/// BallSky::openness.
+float openness(const SkyView& view, Surroundings& surroundings, Vec3f n);
 
 /// BallSky::contact_openness.
 float contact_openness(const BallPacket& contacts, float radius, Vec3f n);

@@ -51,9 +51,21 @@ SkyDirections::SkyDirections(int count)
     for (std::size_t k = 0; k < points.size(); k += kLanes) {
         groups.push_back(make_group(std::span(points).subspan(k, kLanes), spacing));
     }
+    for (std::size_t k = 0; k < groups.size(); k += kLanes) {
+        Axes& packet = axes.emplace_back();
+        for (int i = 0; i < kLanes; ++i) {
+            const std::size_t g = std::min(k + static_cast<std::size_t>(i), groups.size() - 1);
+            packet.x[i] = groups[g].axis.x;
+            packet.y[i] = groups[g].axis.y;
+            packet.z[i] = groups[g].axis.z;
+            packet.sin[i] = groups[g].sin;
+            packet.wide_cos[i] = groups[g].wide_cos;
+            packet.wide_sin[i] = groups[g].wide_sin;
+        }
+    }
 }
 
-// Halves the points along the axis on which they reach farthest, again and again.
+// Halves the groups along the axis on which they reach farthest, again and again.
 void sort_into_groups(std::span<Vec3f> points) {
     if (points.size() <= kLanes) return;
     float Vec3f::*widest = &Vec3f::x;
@@ -65,8 +77,9 @@ void sort_into_groups(std::span<Vec3f> points) {
         widest = axis;
     }
     std::ranges::sort(points, {}, widest);
-    sort_into_groups(points.first(points.size() / 2));
-    sort_into_groups(points.subspan(points.size() / 2));
+    const std::size_t half = points.size() / kLanes / 2 * kLanes;
+    sort_into_groups(points.first(half));
+    sort_into_groups(points.subspan(half));
 }
 
 void make_basis(Vec3f n, Vec3f& tangent, Vec3f& bitangent) {
