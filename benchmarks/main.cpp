@@ -312,7 +312,8 @@ int main(int argc, char** argv) {
     app.add_option("--side", plan.side, "Pixels of the square picture's side [1024]");
     app.add_option("--rounds", plan.rounds, "Rounds to take the median of [7]");
     app.add_option("--threads", plan.threads, "Threads to compare with one [2]");
-    app.add_option("--only", plan.only, "Only rows of these names, as 'edges, 2 px'");
+    app.add_option("--only", plan.only,
+                   "Only rows of these names, as 'edges, 2 px'; of --readers, as vtp");
     app.add_flag("--phases", with_phases, "Where the time of the fastest frame of each row goes");
     app.add_flag("!--no-stencils", plan.stencils, "Only frames of method edges");
     app.add_flag("!--no-built-in", built_in, "Only the files");
@@ -329,7 +330,7 @@ int main(int argc, char** argv) {
     CLI11_PARSE(app, argc, argv);
     if (tracers) return compare_tracers(files, plan.side, plan.rounds);
     if (readers_mb > 0.0) {
-        for (const ReaderRow& row : measure_readers(readers_mb)) {
+        for (const ReaderRow& row : measure_readers(readers_mb, plan.only)) {
             fmt::print("{:<10}{:>8.1f} MB{:>9.0f} MB/s\n", row.format, row.megabytes,
                        row.megabytes_per_second);
             std::fflush(stdout);

@@ -184,7 +184,7 @@ double seconds_to_read(const std::filesystem::path& file) {
 
 }  // namespace
 
-std::vector<ReaderRow> measure_readers(double megabytes) {
+std::vector<ReaderRow> measure_readers(double megabytes, const std::vector<std::string>& only) {
     const auto bytes = static_cast<std::size_t>(megabytes * 1e6);
     const std::filesystem::path folder = std::filesystem::temp_directory_path();
     const std::pair<const char*, Text (*)(std::size_t)> formats[] = {
@@ -192,6 +192,7 @@ std::vector<ReaderRow> measure_readers(double megabytes) {
         {"stl", binary_stl}, {"obj", obj},   {"ply", binary_ply}};
     std::vector<ReaderRow> rows;
     for (const auto& [format, make] : formats) {
+        if (!only.empty() && std::ranges::find(only, format) == only.end()) continue;
         const auto file = folder / fmt::format("inktrace-bench-{}.{}", getpid(), format);
         const Text text = make(bytes);
         std::ofstream(file, std::ios::binary) << text;

@@ -13,7 +13,8 @@ struct ReaderRow {
 };
 
 /// Writes a file of about `megabytes` in each of the formats that simulations and scanners write
-/// large ones in, into a temporary folder, and reads it; the best of three.
-std::vector<ReaderRow> measure_readers(double megabytes);
+/// large ones in (or only in those named), into a temporary folder, and reads it; the best of
+/// three.
+std::vector<ReaderRow> measure_readers(double megabytes, const std::vector<std::string>& only);
 
 }  // namespace ink::bench

@@ -1,9 +1,11 @@
 #include "base/memory.h"
 
+#include <sys/mman.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <cstdint>
 #include <fstream>
 #include <limits>
 #include <optional>
@@ -74,6 +76,19 @@ double free_in_process() {
 
 double free_memory_bytes() {
     return std::min({free_on_machine(), free_in_group(), free_in_process()});
+}
+
+void use_large_pages([[maybe_unused]] const void* begin, [[maybe_unused]] std::size_t bytes) {
+#ifdef MADV_HUGEPAGE
+    constexpr std::uintptr_t kPage = std::uintptr_t{2} << 20;
+    constexpr std::size_t kWorthIt = 4 * kPage;
+    if (bytes < kWorthIt) return;
+    const auto from = reinterpret_cast<std::uintptr_t>(begin);
+    const std::uintptr_t first = (from + kPage - 1) / kPage * kPage;
+    const std::uintptr_t last = (from + bytes) / kPage * kPage;
+    // A wish: that it may not be granted does no harm.
+    madvise(reinterpret_cast<void*>(first), last - first, MADV_HUGEPAGE);
+#endif
 }
 
 }  // namespace ink

@@ -78,13 +78,18 @@ std::size_t first_capacity(const std::filesystem::path& file, std::size_t limit)
 
 std::string read_text(const std::filesystem::path& file, std::size_t limit) {
     const GzHandle handle = open(file);
-    std::string text(first_capacity(file, limit), '\0');
+    std::string text;
+    const auto grow = [&](std::size_t bytes) {
+        reserve_large(text, bytes);
+        text.resize(bytes);
+    };
+    grow(first_capacity(file, limit));
     std::size_t size = 0;
     for (;;) {
         if (size == text.size()) {
             const std::size_t more = std::min(2 * text.size() + kChunk, limit + 1);
             check_memory(file, more);
-            text.resize(more);
+            grow(more);
         }
         const auto room = static_cast<unsigned>(std::min(text.size() - size, kMostAtOnce));
         const int got = gzread(handle.get(), text.data() + size, room);

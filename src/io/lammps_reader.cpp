@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "base/error.h"
+#include "base/memory.h"
 #include "base/text.h"
 #include "io/file_text.h"
 #include "io/formats.h"
@@ -185,7 +186,8 @@ std::string_view length_unit(std::string_view units) {
     return units == "cgs" ? "cm" : "";
 }
 
-FileContents read_frame(const Path& file, const DumpFrame& frame, int frames,
+/// Frees `text`, to which `frame` refers, when it is not needed any more.
+FileContents read_frame(const Path& file, std::string& text, const DumpFrame& frame, int frames,
                         std::vector<std::string> warnings, const ReadOptions& options) {
     ParticleColumns columns(file, column_names(frame.columns), options);
     // A row has at least a digit and a line end for each coordinate.
@@ -206,12 +208,13 @@ FileContents read_frame(const Path& file, const DumpFrame& frame, int frames,
         unscale(read_box(file, frame), scaled, columns.particles());
     }
     contents.length_unit = length_unit(frame.units);
+    release(text);
     return particle_contents(file, "LAMMPS dump", std::move(columns.particles()),
                              std::move(contents), options);
 }
 
 FileContents read_dump(const Path& file, const ReadOptions& options) {
-    const std::string text = read_text(file);
+    std::string text = read_text(file);
     DumpFrames dump(file, text);
     DumpFrame frame;
     DumpFrame wanted;
@@ -234,7 +237,7 @@ FileContents read_dump(const Path& file, const ReadOptions& options) {
     }
     if (frames == 0) throw InputError(file, "has no 'ITEM: ATOMS'; is it a LAMMPS dump in text?");
     check_frame(options.frame, frames, file);
-    return read_frame(file, wanted, frames, std::move(warnings), options);
+    return read_frame(file, text, wanted, frames, std::move(warnings), options);
 }
 
 constexpr std::array<std::string_view, 2> kExtensions{"dump", "lammpstrj"};

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "base/error.h"
+#include "base/memory.h"
 #include "base/text.h"
 #include "io/file_text.h"
 #include "io/formats.h"
@@ -169,8 +170,10 @@ class OffReader {
 };
 
 FileContents read_off(const Path& file, const ReadOptions& /*options*/) {
-    const std::string text = read_text(file);
-    return mesh_contents(file, OffReader(file, text).read());
+    std::string text = read_text(file);
+    PolygonMesh mesh = OffReader(file, text).read();
+    release(text);
+    return mesh_contents(file, std::move(mesh));
 }
 
 }  // namespace

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "base/error.h"
+#include "base/memory.h"
 #include "base/text.h"
 #include "io/file_text.h"
 #include "io/formats.h"
@@ -226,7 +227,7 @@ PolygonMesh read_body(const Path& file, const Header& header, Values values) {
 }
 
 FileContents read_ply(const Path& file, const ReadOptions& options) {
-    const std::string bytes = read_text(file);
+    std::string bytes = read_text(file);
     const Header header = read_header(file, bytes);
     if (!header.has_faces()) return read_points(file, header, bytes, options);
     PolygonMesh mesh;
@@ -239,6 +240,7 @@ FileContents read_ply(const Path& file, const ReadOptions& options) {
         mesh = read_body(file, header, BinaryValues(header.body, order));
     }
     mesh.format = header.encoding == Encoding::ascii ? "ASCII PLY" : "binary PLY";
+    release(bytes);
     return mesh_contents(file, std::move(mesh));
 }
 

@@ -3,18 +3,23 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <span>
 #include <utility>
 
 #include "base/bounds.h"
 #include "base/error.h"
+#include "base/memory.h"
+#include "base/parallel.h"
 #include "base/text.h"
 #include "io/triangulate.h"
 
 namespace ink {
 
 namespace {
+
+constexpr std::size_t kGrain = 1 << 14;
 
 /// Distance from the origin over size beyond which 32-bit coordinates show as steps: a float keeps
 /// 1.7e7 steps to the distance, so less than 2000 across the model, about one a pixel.
@@ -30,12 +35,18 @@ class Triangulator {
   public:
     Triangulator(const std::filesystem::path& file, const PolygonMesh& from)
         : file_(file), from_(from), keep_faces_(has_other_than_triangles(from)) {
-        packed_.reserve(from.normals.size());
-        for (const Vec3f& normal : from.normals) packed_.push_back(pack_normal(normal));
-        mesh_.triangles.reserve(from.polygon_ends.size());
+        packed_.resize(from.normals.size());
+        parallel_ranges(packed_.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i) packed_[i] = pack_normal(from.normals[i]);
+        });
+        reserve_large(mesh_.triangles, from.polygon_ends.size());
     }
 
     Mesh run() {
+        if (!keep_faces_ && all_vertices_exist()) {
+            copy_triangles();
+            return std::move(mesh_);
+        }
         std::uint32_t begin = 0;
         for (std::size_t i = 0; i < from_.polygon_ends.size(); ++i) {
             const std::uint32_t end = from_.polygon_ends[i];
@@ -53,6 +64,32 @@ class Triangulator {
             if (from.polygon_ends[i] != 3 * (i + 1)) return true;
         }
         return false;
+    }
+
+    bool all_vertices_exist() const {
+        std::atomic<bool> all = true;
+        parallel_ranges(from_.corners.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i) {
+                if (from_.corners[i] >= from_.positions.size()) all = false;
+            }
+        });
+        return all;
+    }
+
+    void copy_triangles() {
+        const std::size_t count = from_.polygon_ends.size();
+        mesh_.triangles.resize(count);
+        mesh_.parts = from_.parts;
+        if (!packed_.empty()) mesh_.corner_normals.resize(count);
+        parallel_ranges(count, kGrain, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i) {
+                for (std::size_t k = 0; k < 3; ++k) {
+                    const std::uint32_t vertex = from_.corners[3 * i + k];
+                    mesh_.triangles[i][k] = vertex;
+                    if (!packed_.empty()) mesh_.corner_normals[i][k] = packed_[vertex];
+                }
+            }
+        });
     }
 
     void add_polygon(std::size_t polygon, std::span<const std::uint32_t> vertices) {
@@ -131,6 +168,11 @@ void warn_about_dropped(std::size_t too_small, std::size_t without_area, Polygon
 Mesh clean_mesh(const std::filesystem::path& file, PolygonMesh& polygons) {
     Triangulator triangulator(file, polygons);
     Mesh mesh = triangulator.run();
+    // Welding needs the memory.
+    release(polygons.corners);
+    release(polygons.polygon_ends);
+    release(polygons.parts);
+    release(polygons.normals);
     mesh.vertices = std::move(polygons.positions);
     mesh.colors = std::move(polygons.colors);
     const std::size_t without_area = weld(mesh);
@@ -167,9 +209,13 @@ FileContents describe(Object object, PolygonMesh polygons) {
 
 }  // namespace
 
-bool PolygonMesh::add_position(Vec3d position) {
+bool is_usable_position(Vec3d position) {
     const auto in_range = [](double x) { return std::abs(x) <= kLargestCoordinate; };
-    if (!in_range(position.x) || !in_range(position.y) || !in_range(position.z)) return false;
+    return in_range(position.x) && in_range(position.y) && in_range(position.z);
+}
+
+bool PolygonMesh::add_position(Vec3d position) {
+    if (!is_usable_position(position)) return false;
     if (positions.empty()) origin = position;
     positions.push_back(to_float(position - origin));
     return true;

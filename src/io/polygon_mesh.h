@@ -12,6 +12,9 @@
 
 namespace ink {
 
+/// Whether a coordinate is finite and not beyond kLargestCoordinate.
+bool is_usable_position(Vec3d position);
+
 /// A mesh as its file gives it, before it is cut into triangles. Arrays of one entry a vertex or a
 /// polygon are empty or complete.
 struct PolygonMesh {
@@ -31,7 +34,7 @@ struct PolygonMesh {
     std::vector<std::string> warnings;
     bool single_precision = false;  ///< coordinates were rounded to 32 bits before they came here
 
-    /// False when the position is not finite or beyond kLargestCoordinate; then nothing is added.
+    /// False when the position cannot be used; then nothing is added.
     bool add_position(Vec3d position);
     void end_polygon() { polygon_ends.push_back(static_cast<std::uint32_t>(corners.size())); }
 };

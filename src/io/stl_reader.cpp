@@ -5,7 +5,9 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <bit>
+#include <cstdlib>
 #include <cstring>
 #include <optional>
 #include <string>
@@ -13,6 +15,8 @@
 #include <utility>
 
 #include "base/error.h"
+#include "base/memory.h"
+#include "base/parallel.h"
 #include "base/text.h"
 #include "io/file_text.h"
 #include "io/formats.h"
@@ -71,31 +75,65 @@ Vec3d position_at(const char* bytes) {
             little_endian<float>(bytes + 8)};
 }
 
-void add_triangle(const Path& file, const char* record, std::size_t triangle, PolygonMesh& mesh) {
+std::array<Vec3d, 3> corners_of(const char* record) {
     constexpr std::size_t kNormalBytes = 12;
-    for (std::size_t corner = 0; corner < 3; ++corner) {
-        const Vec3d position = position_at(record + kNormalBytes + corner * 12);
-        mesh.corners.push_back(static_cast<std::uint32_t>(mesh.positions.size()));
-        if (mesh.add_position(position)) continue;
+    constexpr std::size_t kCornerBytes = 12;
+    const char* const corners = record + kNormalBytes;
+    return {position_at(corners), position_at(corners + kCornerBytes),
+            position_at(corners + 2 * kCornerBytes)};
+}
+
+[[noreturn]] void refuse_triangle(const Path& file, const char* record, std::size_t triangle) {
+    for (const Vec3d& p : corners_of(record)) {
+        if (is_usable_position(p)) continue;
         throw InputError(file, fmt::format("a corner of triangle {} lies at ({:g}, {:g}, {:g}), "
                                            "not a usable place; export the model again",
-                                           triangle + 1, position.x, position.y, position.z));
+                                           triangle + 1, p.x, p.y, p.z));
     }
-    mesh.end_polygon();
+    std::abort();
+}
+
+/// The corners of all records. Returns the first record that has an unusable one, or `count`.
+std::size_t read_corners(const char* records, std::size_t count, PolygonMesh& mesh) {
+    constexpr std::size_t kGrain = 1 << 14;
+    mesh.origin = position_at(records + 12);
+    std::atomic<std::size_t> bad = count;
+    parallel_ranges(count, kGrain, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            bool usable = true;
+            std::size_t at = 3 * i;
+            for (const Vec3d& corner : corners_of(records + i * kTriangleBytes)) {
+                usable &= is_usable_position(corner);
+                mesh.corners[at] = static_cast<std::uint32_t>(at);
+                mesh.positions[at++] = to_float(corner - mesh.origin);
+            }
+            mesh.polygon_ends[i] = static_cast<std::uint32_t>(at);
+            if (usable) continue;
+            std::size_t known = bad;
+            while (i < known && !bad.compare_exchange_weak(known, i)) {
+            }
+            return;
+        }
+    });
+    return bad;
 }
 
 PolygonMesh read_binary(const Path& file, std::string_view bytes) {
     check_size(file, bytes);
     const std::size_t count = promised_triangles(bytes);
+    const char* const records = bytes.data() + kHeaderBytes;
     PolygonMesh mesh;
     mesh.format = "binary STL";
     mesh.single_precision = true;
-    mesh.positions.reserve(count * 3);
-    mesh.corners.reserve(count * 3);
-    mesh.polygon_ends.reserve(count);
-    for (std::size_t i = 0; i < count; ++i) {
-        add_triangle(file, bytes.data() + kHeaderBytes + i * kTriangleBytes, i, mesh);
-    }
+    const auto make_room = [](auto& values, std::size_t size) {
+        reserve_large(values, size);
+        values.resize(size);
+    };
+    make_room(mesh.positions, 3 * count);
+    make_room(mesh.corners, 3 * count);
+    make_room(mesh.polygon_ends, count);
+    const std::size_t bad = count == 0 ? 0 : read_corners(records, count, mesh);
+    if (bad < count) refuse_triangle(file, records + bad * kTriangleBytes, bad);
     if (bytes.size() > kHeaderBytes + count * kTriangleBytes) {
         mesh.warnings.emplace_back("The bytes after the last triangle were left out.");
     }
@@ -191,10 +229,13 @@ class AsciiStl {
     bool ended_ = false;
 };
 
-FileContents read_stl(const Path& file, const ReadOptions& /*options*/) {
+PolygonMesh read_polygons(const Path& file) {
     const std::string bytes = read_text(file);
-    return mesh_contents(file,
-                         is_text(bytes) ? AsciiStl(file, bytes).read() : read_binary(file, bytes));
+    return is_text(bytes) ? AsciiStl(file, bytes).read() : read_binary(file, bytes);
+}
+
+FileContents read_stl(const Path& file, const ReadOptions& /*options*/) {
+    return mesh_contents(file, read_polygons(file));
 }
 
 }  // namespace

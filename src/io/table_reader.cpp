@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "base/error.h"
+#include "base/memory.h"
 #include "base/text.h"
 #include "io/file_text.h"
 #include "io/formats.h"
@@ -137,7 +138,7 @@ FileContents read_table(const Path& file, const ReadOptions& options) {
             fmt::format("The file has no line of names: its columns were taken for x, y, z{}.",
                         layout.names.size() > 3 ? ", radius" : ""));
     }
-    text = {};
+    release(text);
     return particle_contents(file, "table", std::move(columns.particles()), std::move(contents),
                              options);
 }

@@ -10,8 +10,10 @@
 #include <cstdint>
 #include <cstring>
 #include <limits>
+#include <type_traits>
 
 #include "base/error.h"
+#include "base/memory.h"
 
 namespace ink {
 
@@ -216,33 +218,31 @@ class ArrayReader {
 };
 
 template <class T, class Number>
-std::vector<Number> convert(std::string_view bytes, std::size_t count, bool swap) {
-    std::vector<Number> values(count);
+void convert(std::string_view bytes, bool swap, Number* values) {
+    const std::size_t count = bytes.size() / sizeof(T);
     if constexpr (std::is_same_v<T, Number>) {
         if (!swap) {
-            std::memcpy(values.data(), bytes.data(), count * sizeof(Number));
-            return values;
+            std::memcpy(values, bytes.data(), bytes.size());
+            return;
         }
     }
     for (std::size_t i = 0; i < count; ++i) {
         values[i] = static_cast<Number>(load<T>(bytes.data() + i * sizeof(T), swap));
     }
-    return values;
 }
 
 template <class Number>
-std::vector<Number> convert(std::string_view type, std::string_view bytes, std::size_t count,
-                            bool swap) {
-    if (type == "Float32") return convert<float, Number>(bytes, count, swap);
-    if (type == "Float64") return convert<double, Number>(bytes, count, swap);
-    if (type == "Int64") return convert<std::int64_t, Number>(bytes, count, swap);
-    if (type == "UInt64") return convert<std::uint64_t, Number>(bytes, count, swap);
-    if (type == "Int32") return convert<std::int32_t, Number>(bytes, count, swap);
-    if (type == "UInt32") return convert<std::uint32_t, Number>(bytes, count, swap);
-    if (type == "Int16") return convert<std::int16_t, Number>(bytes, count, swap);
-    if (type == "UInt16") return convert<std::uint16_t, Number>(bytes, count, swap);
-    if (type == "Int8") return convert<std::int8_t, Number>(bytes, count, swap);
-    return convert<std::uint8_t, Number>(bytes, count, swap);
+void convert(std::string_view type, std::string_view bytes, bool swap, Number* values) {
+    if (type == "Float32") return convert<float>(bytes, swap, values);
+    if (type == "Float64") return convert<double>(bytes, swap, values);
+    if (type == "Int64") return convert<std::int64_t>(bytes, swap, values);
+    if (type == "UInt64") return convert<std::uint64_t>(bytes, swap, values);
+    if (type == "Int32") return convert<std::int32_t>(bytes, swap, values);
+    if (type == "UInt32") return convert<std::uint32_t>(bytes, swap, values);
+    if (type == "Int16") return convert<std::int16_t>(bytes, swap, values);
+    if (type == "UInt16") return convert<std::uint16_t>(bytes, swap, values);
+    if (type == "Int8") return convert<std::int8_t>(bytes, swap, values);
+    return convert<std::uint8_t>(bytes, swap, values);
 }
 
 template <class Number>
@@ -281,11 +281,16 @@ bool is_vtk_number(std::string_view type) {
 
 namespace {
 
-template <class Number>
-std::vector<Number> read_numbers(const VtkArray& array, const VtkEncoding& encoding,
-                                 std::size_t count, const Path& file) {
+/// `room` gives the place for the numbers, when it is known that they are there.
+template <class Number, class Room>
+void read_numbers(const VtkArray& array, const VtkEncoding& encoding, std::size_t count,
+                  const Path& file, const Room& room) {
     if (!is_vtk_number(array.type)) refuse(file, array, "is not of numbers");
-    if (array.format == "ascii") return read_ascii<Number>(array, count, file);
+    if (array.format == "ascii") {
+        const std::vector<Number> values = read_ascii<Number>(array, count, file);
+        std::ranges::copy(values, room());
+        return;
+    }
     const std::size_t wanted = count * size_of(array.type);
     std::string buffer;
     ArrayReader reader(array, encoding, file);
@@ -293,19 +298,42 @@ std::vector<Number> read_numbers(const VtkArray& array, const VtkEncoding& encod
     if (bytes.size() < wanted) {
         refuse(file, array, fmt::format("has {} of {} bytes", bytes.size(), wanted));
     }
-    return convert<Number>(array.type, bytes, count, reader.swap());
+    convert<Number>(array.type, bytes.substr(0, wanted), reader.swap(), room());
+}
+
+template <class Number>
+std::vector<Number> read_vector(const VtkArray& array, const VtkEncoding& encoding,
+                                std::size_t count, const Path& file) {
+    std::vector<Number> values;
+    read_numbers<Number>(array, encoding, count, file, [&] {
+        reserve_large(values, count);
+        values.resize(count);
+        return values.data();
+    });
+    return values;
 }
 
 }  // namespace
 
 std::vector<float> read_vtk_array(const VtkArray& array, const VtkEncoding& encoding,
                                   std::size_t count, const Path& file) {
-    return read_numbers<float>(array, encoding, count, file);
+    return read_vector<float>(array, encoding, count, file);
 }
 
 std::vector<double> read_vtk_doubles(const VtkArray& array, const VtkEncoding& encoding,
                                      std::size_t count, const Path& file) {
-    return read_numbers<double>(array, encoding, count, file);
+    return read_vector<double>(array, encoding, count, file);
+}
+
+void append_vtk_points(const VtkArray& array, const VtkEncoding& encoding, std::size_t points,
+                       const Path& file, std::vector<Vec3f>& positions) {
+    static_assert(sizeof(Vec3f) == 3 * sizeof(float));
+    read_numbers<float>(array, encoding, 3 * points, file, [&] {
+        const std::size_t before = positions.size();
+        reserve_large(positions, before + points);
+        positions.resize(before + points);
+        return &positions[before].x;
+    });
 }
 
 }  // namespace ink

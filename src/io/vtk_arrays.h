@@ -6,6 +6,8 @@
 #include <string_view>
 #include <vector>
 
+#include "base/vec.h"
+
 namespace ink {
 
 /// How the arrays of a VTK XML file are written, as its first element says.
@@ -38,5 +40,8 @@ std::vector<float> read_vtk_array(const VtkArray& array, const VtkEncoding& enco
 /// The same in full precision.
 std::vector<double> read_vtk_doubles(const VtkArray& array, const VtkEncoding& encoding,
                                      std::size_t count, const std::filesystem::path& file);
+/// The same, three numbers a point, behind the positions that are there.
+void append_vtk_points(const VtkArray& array, const VtkEncoding& encoding, std::size_t points,
+                       const std::filesystem::path& file, std::vector<Vec3f>& positions);
 
 }  // namespace ink

@@ -60,6 +60,12 @@ class VtkReader {
     VtkReader(const Path& file, const ReadOptions& options) : file_(file), options_(options) {}
 
     FileContents read() {
+        read_arrays();
+        return finish();
+    }
+
+  private:
+    void read_arrays() {
         const std::string text = read_text(file_);
         VtkText cut = cut_appended(text);
         pugi::xml_document document;
@@ -74,10 +80,8 @@ class VtkReader {
         if (!root) throw InputError(file_, "has no element 'VTKFile'; is it a VTK XML file?");
         read_encoding(root, cut);
         read_pieces(root);
-        return finish();
     }
 
-  private:
     void read_encoding(const pugi::xml_node& root, const VtkText& cut) {
         const std::string_view compressor = root.attribute("compressor").value();
         if (!compressor.empty() && compressor != "vtkZLibDataCompressor") {
@@ -121,7 +125,8 @@ class VtkReader {
         if (!places) throw InputError(file_, "a piece has no array of points; export it again");
         const VtkArray where = describe_vtk_array(places);
         if (where.type == "Float32" && where.format != "ascii") {
-            add_positions(read_vtk_array(where, encoding_, 3 * points, file_));
+            append_vtk_points(where, encoding_, points, file_, particles_.positions);
+            shift_positions();
             surface_.single_precision = true;
         } else {
             add_positions(read_vtk_doubles(where, encoding_, 3 * points, file_));
@@ -134,19 +139,33 @@ class VtkReader {
         points_before_ += points;
     }
 
-    template <class Number>
-    void add_positions(const std::vector<Number>& places) {
-        std::vector<Vec3f>& positions = particles_.positions;
-        if (positions.empty()) {
-            const Vec3d first{places[0], places[1], places[2]};
-            if (std::isfinite(first.x + first.y + first.z)) particles_.origin = first;
+    void choose_origin(Vec3d first) {
+        if (points_before_ == 0 && std::isfinite(first.x + first.y + first.z)) {
+            particles_.origin = first;
         }
-        const std::size_t before = positions.size();
-        positions.resize(before + places.size() / 3);
+    }
+
+    /// The positions of this piece, which are the file's, from the origin.
+    void shift_positions() {
+        std::vector<Vec3f>& positions = particles_.positions;
+        choose_origin(to_double(positions[points_before_]));
+        parallel_ranges(positions.size() - points_before_, kGrain,
+                        [&](std::size_t begin, std::size_t end) {
+                            for (std::size_t i = begin; i < end; ++i) {
+                                Vec3f& p = positions[points_before_ + i];
+                                p = to_float(to_double(p) - particles_.origin);
+                            }
+                        });
+    }
+
+    void add_positions(const std::vector<double>& places) {
+        std::vector<Vec3f>& positions = particles_.positions;
+        choose_origin({places[0], places[1], places[2]});
+        positions.resize(points_before_ + places.size() / 3);
         parallel_ranges(places.size() / 3, kGrain, [&](std::size_t begin, std::size_t end) {
             for (std::size_t i = begin; i < end; ++i) {
                 const Vec3d place{places[3 * i], places[3 * i + 1], places[3 * i + 2]};
-                positions[before + i] = to_float(place - particles_.origin);
+                positions[points_before_ + i] = to_float(place - particles_.origin);
             }
         });
     }

@@ -1,12 +1,14 @@
 #include "scene/mesh.h"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <bit>
 #include <cmath>
 #include <limits>
 #include <utility>
 
+#include "base/memory.h"
 #include "base/parallel.h"
 
 namespace ink {
@@ -46,32 +48,34 @@ namespace {
 
 constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 
-/// Numbers distinct positions in the order in which they come.
-class PositionIndex {
+/// Finds positions that are bitwise equal, of those whose hashes fall to this share of the work.
+class PositionShare {
   public:
-    PositionIndex() : slots_(1024, kNone) {}
-
-    std::uint32_t number_of(Vec3f position) {
-        const Vec3f key = position + Vec3f{};  // -0 + 0 is 0
-        std::uint32_t& slot = slot_of(key);
-        if (slot != kNone) return slot;
-        const auto number = static_cast<std::uint32_t>(positions_.size());
-        slot = number;
-        positions_.push_back(key);
-        // Grown as needed rather than made for the worst case: a triangle soup has six times as
-        // many corners as positions, and a smaller table stays in cache.
-        if (positions_.size() * 2 > slots_.size()) grow();
-        return number;
+    /// Shares are a power of two.
+    PositionShare(const std::vector<Vec3f>& vertices, std::size_t share, std::size_t shares)
+        : vertices_(vertices), share_(share), share_mask_(shares - 1) {
+        // As a soup of triangles needs, which has six times as many corners as positions. A table
+        // that grows when it must stays in cache longer than one made for the worst case.
+        slots_.resize(std::bit_ceil(std::max<std::size_t>(vertices.size() / (4 * shares), 1024)));
     }
 
-    /// Asks the cache for what `number_of` will look at.
-    void prefetch(Vec3f position) const {
-        __builtin_prefetch(&slots_[hash(position + Vec3f{}) & (slots_.size() - 1)]);
+    /// Of each vertex of this share the first one at its position.
+    void find_firsts(std::vector<std::uint32_t>& firsts) {
+        std::array<Entry, kBlock> block;
+        for (std::size_t begin = 0; begin < vertices_.size(); begin += kBlock) {
+            const std::size_t count = collect(begin, block);
+            for (std::size_t i = 0; i < count; ++i) firsts[block[i].vertex] = first_at(block[i]);
+        }
     }
-
-    std::vector<Vec3f> take_positions() { return std::move(positions_); }
 
   private:
+    static constexpr std::size_t kBlock = 64;
+    /// A vertex with the low half of its hash, which tells almost all others apart.
+    struct Entry {
+        std::uint32_t tag = 0;
+        std::uint32_t vertex = kNone;
+    };
+
     static std::uint64_t hash(Vec3f p) {
         std::uint64_t h = std::bit_cast<std::uint32_t>(p.x);
         h = (h ^ std::bit_cast<std::uint32_t>(p.y)) * 0x9e3779b97f4a7c15u;
@@ -80,23 +84,69 @@ class PositionIndex {
         return h ^ (h >> 32);
     }
 
-    std::uint32_t& slot_of(Vec3f key) {
+    /// The next vertices of this share. Asks the cache for what `first_at` will look at.
+    std::size_t collect(std::size_t begin, std::array<Entry, kBlock>& block) const {
+        const std::size_t end = std::min(begin + kBlock, vertices_.size());
+        std::size_t count = 0;
+        for (std::size_t i = begin; i < end; ++i) {
+            const std::uint64_t h = hash(vertices_[i] + Vec3f{});  // -0 + 0 is 0
+            block[count] = {static_cast<std::uint32_t>(h), static_cast<std::uint32_t>(i)};
+            __builtin_prefetch(&slots_[block[count].tag & (slots_.size() - 1)]);
+            count += (h >> 56U & share_mask_) == share_ ? 1 : 0;
+        }
+        return count;
+    }
+
+    std::uint32_t first_at(Entry entry) {
         const std::size_t mask = slots_.size() - 1;
-        std::size_t i = hash(key) & mask;
-        while (slots_[i] != kNone && positions_[slots_[i]] != key) i = (i + 1) & mask;
-        return slots_[i];
+        std::size_t i = entry.tag & mask;
+        for (; slots_[i].vertex != kNone; i = (i + 1) & mask) {
+            const Entry known = slots_[i];
+            if (known.tag == entry.tag && vertices_[known.vertex] == vertices_[entry.vertex]) {
+                return known.vertex;
+            }
+        }
+        slots_[i] = entry;
+        if (++used_ * 2 > slots_.size()) grow();
+        return entry.vertex;
     }
 
     void grow() {
-        slots_.assign(slots_.size() * 2, kNone);
-        for (std::size_t i = 0; i < positions_.size(); ++i) {
-            slot_of(positions_[i]) = static_cast<std::uint32_t>(i);
+        const std::vector<Entry> old = std::exchange(slots_, std::vector<Entry>(2 * slots_.size()));
+        const std::size_t mask = slots_.size() - 1;
+        for (const Entry& entry : old) {
+            if (entry.vertex == kNone) continue;
+            std::size_t i = entry.tag & mask;
+            while (slots_[i].vertex != kNone) i = (i + 1) & mask;
+            slots_[i] = entry;
         }
     }
 
-    std::vector<std::uint32_t> slots_;  ///< numbers; the size is a power of two
-    std::vector<Vec3f> positions_;
+    const std::vector<Vec3f>& vertices_;
+    std::size_t share_, share_mask_;
+    std::vector<Entry> slots_;  ///< the size is a power of two
+    std::size_t used_ = 0;
 };
+
+/// Of each vertex the first one at the same position, which may be itself. Every thread reads all
+/// positions, and keeps its own share of them.
+std::vector<std::uint32_t> firsts_at_positions(const std::vector<Vec3f>& vertices) {
+    constexpr std::size_t kWorthSharing = 1 << 15;
+    constexpr unsigned kMostShares = 16;
+    const unsigned shares =
+        vertices.size() < kWorthSharing
+            ? 1U
+            : std::bit_ceil(std::min(static_cast<unsigned>(hardware_threads()), kMostShares));
+    std::vector<std::uint32_t> firsts;
+    reserve_large(firsts, vertices.size());
+    firsts.resize(vertices.size());
+    parallel_ranges(shares, 1, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t share = begin; share < end; ++share) {
+            PositionShare(vertices, share, shares).find_firsts(firsts);
+        }
+    });
+    return firsts;
+}
 
 /// Twice the area as a vector along the normal. In double, because the squares of small
 /// coordinates leave the range of a float.
@@ -153,27 +203,24 @@ std::size_t drop_triangles_without_area(Mesh& mesh) {
 std::size_t weld(Mesh& mesh) {
     mesh.edge_flags.clear();
     const std::size_t dropped = drop_triangles_without_area(mesh);
-    PositionIndex index;
-    std::vector<std::uint32_t> renumbered(mesh.vertices.size(), kNone);
+    const std::vector<std::uint32_t> firsts = firsts_at_positions(mesh.vertices);
+    std::vector<std::uint32_t> numbers;  // of first vertices
+    reserve_large(numbers, firsts.size());
+    numbers.resize(firsts.size(), kNone);
+    std::vector<Vec3f> positions;
     std::vector<Rgb8> colors;
-    constexpr std::size_t kAhead = 6;  // triangles; long enough for memory to answer
-    for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
-        if (i + kAhead < mesh.triangles.size()) {
-            for (const std::uint32_t vertex : mesh.triangles[i + kAhead]) {
-                index.prefetch(mesh.vertices[vertex]);
-            }
-        }
-        for (std::uint32_t& vertex : mesh.triangles[i]) {
-            std::uint32_t& number = renumbered[vertex];
+    for (Mesh::Triangle& triangle : mesh.triangles) {
+        for (std::uint32_t& vertex : triangle) {
+            std::uint32_t& number = numbers[firsts[vertex]];
             if (number == kNone) {
-                number = index.number_of(mesh.vertices[vertex]);
-                const bool first = number == colors.size();
-                if (first && !mesh.colors.empty()) colors.push_back(mesh.colors[vertex]);
+                number = static_cast<std::uint32_t>(positions.size());
+                positions.push_back(mesh.vertices[vertex] + Vec3f{});
+                if (!mesh.colors.empty()) colors.push_back(mesh.colors[vertex]);
             }
             vertex = number;
         }
     }
-    mesh.vertices = index.take_positions();
+    mesh.vertices = std::move(positions);
     mesh.colors = std::move(colors);
     return dropped;
 }

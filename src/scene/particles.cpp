@@ -7,10 +7,12 @@
 #include <cmath>
 #include <cstring>
 #include <map>
+#include <span>
 #include <type_traits>
 #include <utility>
 
 #include "base/error.h"
+#include "base/memory.h"
 #include "base/parallel.h"
 #include "base/text.h"
 #include "scene/color_scale.h"
@@ -59,31 +61,31 @@ namespace {
 
 /// Radii where they differ, or one for all.
 struct Radii {
-    std::vector<float> each;
-    float all = 1.0F;
+    std::span<const float> each;
+    float all = 1.0F;        ///< where they do not differ
+    float scale = 1.0F;      ///< of `each`
+    std::vector<float> own;  ///< `each`, where it is not a field's
 
-    float at(std::size_t i) const { return each.empty() ? all : each[i]; }
+    float at(std::size_t i) const { return each.empty() ? all : each[i] * scale; }
 };
 
+/// May refer to the fields of `particles`.
 Radii particle_radii(const Particles& particles, const DataSettings& settings, Object& object,
                      std::vector<std::string>& warnings) {
     if (const auto uniform = uniform_radius(settings.radius)) {
-        return {{}, static_cast<float>(*uniform)};
+        return {.each = {}, .all = static_cast<float>(*uniform), .own = {}};
     }
     if (!settings.radius.empty()) {
-        Radii radii{field_values(particles, "radius", settings.radius)};
-        if (is_diameter_name(settings.radius)) {
-            for (float& radius : radii.each) radius *= 0.5F;
-        }
+        Radii radii{.each = {}, .own = field_values(particles, "radius", settings.radius)};
+        radii.each = radii.own;
+        if (is_diameter_name(settings.radius)) radii.scale = 0.5F;
         return radii;
     }
     for (const auto& [is_name, scale] :
          {std::pair{&is_radius_name, 1.0F}, {&is_diameter_name, 0.5F}}) {
         for (const Field& field : particles.fields) {
             if (!is_name(field.name) || field.components != 1) continue;
-            Radii radii{field.values};
-            for (float& radius : radii.each) radius *= scale;
-            return radii;
+            return {.each = field.values, .scale = scale, .own = {}};
         }
     }
     const double radius = touching_radius(particles.positions);
@@ -92,7 +94,7 @@ Radii particle_radii(const Particles& particles, const DataSettings& settings, O
         "(--radius sets one).",
         radius));
     object.chosen_radius = radius;
-    return {{}, static_cast<float>(radius)};
+    return {.each = {}, .all = static_cast<float>(radius), .own = {}};
 }
 
 /// Particles of one value of a field are one part.
@@ -125,23 +127,44 @@ bool is_drawable(const Placement& place) {
     return volume != 0.0;
 }
 
-/// Which particles can be drawn: a place and a size, inside the box.
+bool has_place(Vec3f p) {
+    return std::abs(p.x) <= kLargest && std::abs(p.y) <= kLargest && std::abs(p.z) <= kLargest;
+}
+
+Vec3f place_of(const Sphere& sphere) { return sphere.centre; }
+Vec3f place_of(const Placement& placement) { return placement.origin; }
+
+/// What most files hold; said quickly.
+template <class Primitive>
+bool all_drawable(const std::vector<Primitive>& primitives) {
+    std::atomic<bool> all = true;
+    parallel_ranges(primitives.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+        bool good = true;
+        for (std::size_t i = begin; i < end; ++i) {
+            good &= has_place(place_of(primitives[i])) && is_drawable(primitives[i]);
+        }
+        if (!good) all = false;
+    });
+    return all;
+}
+
+/// Which particles can be drawn: a place and a size, inside the box. Empty: all of them.
 template <class Primitive>
 std::vector<std::uint8_t> drawable(const Particles& particles,
                                    const std::vector<Primitive>& primitives,
                                    const DataSettings& settings,
                                    std::vector<std::string>& warnings) {
+    const bool clipped = !settings.clip.everything();
+    if (!clipped && particles.count() > 0 && all_drawable(primitives)) return {};
     std::vector<std::uint8_t> keep(particles.count());
     std::atomic<std::uint64_t> bad = 0;
     std::atomic<std::uint64_t> outside = 0;
     parallel_ranges(keep.size(), kGrain, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             const Vec3f p = particles.positions[i];
-            const bool placed =
-                std::abs(p.x) <= kLargest && std::abs(p.y) <= kLargest && std::abs(p.z) <= kLargest;
+            const bool placed = has_place(p);
             const bool sized = is_drawable(primitives[i]);
-            const bool inside =
-                settings.clip.everything() || settings.clip.holds(particles.origin + to_double(p));
+            const bool inside = !clipped || settings.clip.holds(particles.origin + to_double(p));
             keep[i] = placed && sized && inside ? 1 : 0;
             if (!placed || !sized) ++bad;
             if (placed && sized && !inside) ++outside;
@@ -186,6 +209,7 @@ std::vector<Rgb8> particle_colors(Particles& particles, const DataSettings& sett
 
 Spheres make_spheres(const Particles& particles, const Radii& radii) {
     Spheres shape;
+    reserve_large(shape.spheres, particles.count());
     shape.spheres.resize(particles.count());
     parallel_ranges(particles.count(), kGrain, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
@@ -219,7 +243,7 @@ std::vector<std::uint32_t> finish(const Particles& particles, S shape,
     const std::vector<std::uint8_t> keep =
         drawable(particles, shape.*primitives, settings, warnings);
     std::vector<std::uint32_t> rows;
-    if (std::memchr(keep.data(), 0, keep.size()) != nullptr) {
+    if (!keep.empty() && std::memchr(keep.data(), 0, keep.size()) != nullptr) {
         keep_only(keep, shape.*primitives);
         keep_only(keep, shape.colors);
         keep_only(keep, shape.parts);
