@@ -140,6 +140,49 @@ TEST(GltfReader, KeepsTheOutsideOfAMirroredPartOutside) {
     EXPECT_GT(z_of("[-1,1,1]"), 0.0F);
 }
 
+TEST(GltfReader, RefusesTrianglesOfVerticesThatAreNotThere) {
+    const TemporaryFolder folder;
+    // Two triangles, whose indices are bytes and the last ones of the file.
+    std::string bytes = glb(R"({"mesh":0})", "[1,1,0]", 3, "5121");
+    const std::string_view three = R"("count":3,"type":"SCALAR")";
+    bytes[bytes.find(three) + three.find('3')] = '6';
+    const auto with = [&](std::string indices) {
+        indices.resize(8);
+        return folder.write("a.glb", bytes.substr(0, bytes.size() - 8) + indices);
+    };
+    EXPECT_EQ(mesh(read_file(with({0, 1, 2, 2, 1, 0}))).triangles.size(), 2U);
+    expect_refused(with({0, 1, 2, 0, 1, 3}),
+                   "1 of 2 triangles use vertices that are not there; the file is damaged");
+}
+
+TEST(GltfReader, NamesACompressionThatItDoesNotKnow) {
+    const TemporaryFolder folder;
+    expect_refused(
+        folder.write("a.gltf", R"({"asset":{"version":"2.0"},)"
+                               R"("extensionsRequired":["KHR_draco_mesh_compression"]})"),
+        "needs 'KHR_draco_mesh_compression', which is not understood; export it without");
+}
+
+TEST(MeshReader, CountsEdgesWithMoreThanTwoFaces) {
+    const TemporaryFolder folder;
+    // Three leaves of a book.
+    const FileContents contents =
+        read_file(folder.write("a.off",
+                               "OFF\n5 3 0\n0 0 0\n0 0 1\n1 0 0\n-1 1 0\n-1 -1 0\n"
+                               "3 0 1 2\n3 0 1 3\n3 0 1 4\n"));
+    ASSERT_EQ(contents.warnings.size(), 1U);
+    EXPECT_TRUE(contents.warnings[0].starts_with("1 edge has more than two faces"));
+}
+
+TEST(MeshReader, SaysWhichTrianglesHaveNoArea) {
+    const TemporaryFolder folder;
+    const FileContents contents = read_file(folder.write(
+        "a.off", "OFF\n5 3 0\n0 0 0\n1 0 0\n0 1 0\n2 0 0\n0 0 0\n3 0 1 2\n3 0 1 3\n3 0 4 2\n"));
+    ASSERT_EQ(contents.warnings.size(), 1U);
+    EXPECT_TRUE(contents.warnings[0].starts_with("2 of 3 triangles have no area"));
+    EXPECT_EQ(mesh(contents).triangles.size(), 1U);
+}
+
 TEST(GltfReader, RefusesWhatAssimpCannotRead) {
     const TemporaryFolder folder;
     expect_refused(folder.write("a.glb", glb(R"({"mesh":7})")), "cannot be read as a glTF file");

@@ -156,6 +156,37 @@ TEST(Weld, SeesAreaWhereTheSquareOfAFloatIsZero) {
     EXPECT_EQ(weld(mesh), 0u);
 }
 
+TEST(Weld, NumbersVerticesByFirstUseHoweverManyThreadsLookForThem) {
+    constexpr std::uint32_t kSide = 150;
+    std::mt19937 random(7);
+    Mesh soup;
+    for (std::uint32_t i = 0; i < 20'000; ++i) {
+        const auto corner = [&](std::uint32_t dx, std::uint32_t dy) {
+            const auto at = static_cast<std::uint32_t>(random() % (kSide * kSide));
+            soup.vertices.push_back({static_cast<float>(at % kSide + kSide * dx),
+                                     static_cast<float>(at / kSide + kSide * dy), 0.0F});
+        };
+        corner(0, 0);
+        corner(1, 0);
+        corner(0, 1);
+        soup.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
+    }
+    Mesh welded = soup;
+    EXPECT_EQ(weld(welded), 0U);
+
+    std::map<std::pair<float, float>, std::uint32_t> numbers;
+    for (std::uint32_t i = 0; i < soup.triangles.size(); ++i) {
+        for (std::size_t k = 0; k < 3; ++k) {
+            const Vec3f p = soup.vertices[soup.triangles[i][k]];
+            const auto next = static_cast<std::uint32_t>(numbers.size());
+            const std::uint32_t number = numbers.try_emplace({p.x, p.y}, next).first->second;
+            ASSERT_EQ(welded.triangles[i][k], number);
+            ASSERT_EQ(welded.vertices[number], p);
+        }
+    }
+    EXPECT_EQ(welded.vertices.size(), numbers.size());
+}
+
 TEST(Weld, OfAWeldedMeshChangesNothing) {
     Mesh mesh = cube_soup();
     weld(mesh);

@@ -461,6 +461,16 @@ TEST(RealParticles, AreRefusedWithAMessageWhereBroken) {
     }
 }
 
+TEST(LammpsReader, WarnsOfABoxThatIsNoneWhereNothingNeedsIt) {
+    const TemporaryFolder folder;
+    const FileContents contents = read_file(
+        folder.write("a.dump",
+                     "ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n1\nITEM: BOX BOUNDS pp pp pp\n0 1\n"
+                     "DUMMY\n0 1\nITEM: ATOMS x y z radius\n1 2 3 1\n"));
+    ASSERT_EQ(contents.warnings.size(), 1U);
+    EXPECT_TRUE(contents.warnings[0].starts_with("Line 7: the bounds of the box are not numbers"));
+}
+
 // ---- Glyphs ----
 
 const Glyphs& glyphs(const FileContents& contents) {

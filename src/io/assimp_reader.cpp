@@ -295,6 +295,7 @@ std::string pack(const PolygonMesh& mesh) {
     put(bytes, std::vector<Rgb8>(mesh.color ? 1U : 0U, mesh.color.value_or(Rgb8{})));
     put(bytes, join(mesh.part_names));
     put(bytes, join(mesh.warnings));
+    put(bytes, std::vector<std::uint64_t>{mesh.faces_read});
     return bytes;
 }
 
@@ -319,15 +320,18 @@ std::optional<PolygonMesh> unpack(std::string_view bytes) {
     PolygonMesh mesh;
     std::vector<double> origin;
     std::vector<Rgb8> color;
+    std::vector<std::uint64_t> faces_read;
     Parcel parcel(bytes);
-    const bool whole = parcel.take(origin) && parcel.take(mesh.positions) &&
-                       parcel.take(mesh.normals) && parcel.take(mesh.colors) &&
-                       parcel.take(mesh.corners) && parcel.take(mesh.polygon_ends) &&
-                       parcel.take(mesh.parts) && parcel.take(color) &&
-                       parcel.take(mesh.part_names) && parcel.take(mesh.warnings);
-    if (!whole || origin.size() != 3 || !is_complete(mesh)) return std::nullopt;
+    const bool whole =
+        parcel.take(origin) && parcel.take(mesh.positions) && parcel.take(mesh.normals) &&
+        parcel.take(mesh.colors) && parcel.take(mesh.corners) && parcel.take(mesh.polygon_ends) &&
+        parcel.take(mesh.parts) && parcel.take(color) && parcel.take(mesh.part_names) &&
+        parcel.take(mesh.warnings) && parcel.take(faces_read);
+    if (!whole || origin.size() != 3 || faces_read.size() != 1 || !is_complete(mesh))
+        return std::nullopt;
     mesh.origin = {origin[0], origin[1], origin[2]};
     if (!color.empty()) mesh.color = color[0];
+    mesh.faces_read = faces_read[0];
     mesh.single_precision = true;
     return mesh;
 }
@@ -348,6 +352,7 @@ std::string read_packed(const Path& file, std::string_view text, std::string_vie
     const std::size_t most = std::min<std::size_t>(kCopies * text.size(), std::size_t{1} << 31);
     std::optional<PolygonMesh> polygons = SceneWalk(*scene, !is_obj, most).run();
     if (!polygons) return {};
+    for (const aiMesh* const mesh : meshes_of(*scene)) polygons->faces_read += mesh->mNumFaces;
     if (library.found || !is_obj) {
         for (const aiMesh* const mesh : meshes_of(*scene)) {
             if (!polygons->color) polygons->color = material_color(*scene, *mesh);

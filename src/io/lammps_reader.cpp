@@ -156,6 +156,21 @@ Box read_box(const Path& file, const DumpFrame& frame) {
             {xz, yz, numbers[2][1] - numbers[2][0]}};
 }
 
+/// Where coordinates are not scaled, nothing needs the box; but something is wrong with the file.
+void warn_about_box(const DumpFrame& frame, std::vector<std::string>& warnings) {
+    if (frame.box_line == 0) return;
+    for (std::size_t row = 0; row < frame.box.size(); ++row) {
+        std::string_view bounds = frame.box[row];
+        const auto lower = parse_double(take_word(bounds));
+        const auto upper = parse_double(take_word(bounds));
+        if (lower && upper) continue;
+        warnings.push_back(
+            fmt::format("Line {}: the bounds of the box are not numbers; they are not needed here.",
+                        frame.box_line + row));
+        return;
+    }
+}
+
 std::vector<std::string> column_names(std::string_view line) {
     std::vector<std::string> names;
     for (std::string_view word = take_word(line); !word.empty(); word = take_word(line)) {
@@ -206,6 +221,8 @@ FileContents read_frame(const Path& file, std::string& text, const DumpFrame& fr
     const std::array<bool, 3> scaled = columns.scaled();
     if (scaled[0] || scaled[1] || scaled[2]) {
         unscale(read_box(file, frame), scaled, columns.particles());
+    } else {
+        warn_about_box(frame, contents.warnings);
     }
     contents.length_unit = length_unit(frame.units);
     release(text);

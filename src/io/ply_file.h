@@ -84,6 +84,19 @@ class BinaryValues {
         return false;
     }
 
+    /// Takes a face of a byte and three 32-bit numbers, as almost all are, if one follows and its
+    /// corners are below `limit`: in a third of the time.
+    bool take_triangle(std::uint64_t limit, std::array<std::uint32_t, 3>& corners) {
+        constexpr std::size_t kBytes = 1 + sizeof(corners);
+        if (swap_ || rest_.size() < kBytes || rest_.front() != 3) return false;
+        std::memcpy(corners.data(), rest_.data() + 1, sizeof(corners));
+        for (const std::uint32_t corner : corners) {
+            if (corner >= limit) return false;
+        }
+        rest_.remove_prefix(kBytes);
+        return true;
+    }
+
     std::optional<std::size_t> line() const { return std::nullopt; }
 
   private:
@@ -115,6 +128,10 @@ class AsciiValues {
         if (result.ec != std::errc{}) return false;
         at_ = result.ptr;
         return true;
+    }
+
+    static bool take_triangle(std::uint64_t /*limit*/, std::array<std::uint32_t, 3>& /*corners*/) {
+        return false;
     }
 
     std::optional<std::size_t> line() const {

@@ -141,7 +141,7 @@ class BodyReader {
     void read_vertices() {
         const VertexLayout layout(*element_);
         mesh_.single_precision = layout.types[kX] == Type::float32;
-        mesh_.positions.reserve(element_->count);
+        reserve_large(mesh_.positions, element_->count);
         for (index_ = 0; index_ < element_->count; ++index_)
             add_vertex(layout, read_vertex(layout));
     }
@@ -181,9 +181,16 @@ class BodyReader {
 
     void read_faces() {
         const Element& faces = *element_;
-        mesh_.polygon_ends.reserve(faces.count);
-        mesh_.corners.reserve(faces.count * 3);
+        reserve_large(mesh_.polygon_ends, faces.count);
+        reserve_large(mesh_.corners, faces.count * 3);
+        const bool plain = are_plain(faces);
+        std::array<std::uint32_t, 3> triangle{};
         for (index_ = 0; index_ < faces.count; ++index_) {
+            if (plain && values_.take_triangle(vertex_count_, triangle)) {
+                mesh_.corners.insert(mesh_.corners.end(), triangle.begin(), triangle.end());
+                mesh_.end_polygon();
+                continue;
+            }
             bool done = false;
             for (const Property& property : faces.properties) {
                 if (is_corner_list(property) && !done) {
@@ -195,6 +202,13 @@ class BodyReader {
             }
             mesh_.end_polygon();
         }
+    }
+
+    static bool are_plain(const Element& faces) {
+        if (faces.properties.size() != 1 || !is_corner_list(faces.properties[0])) return false;
+        const Property& list = faces.properties[0];
+        const bool short_length = list.length_type == Type::uint8 || list.length_type == Type::int8;
+        return short_length && (list.type == Type::int32 || list.type == Type::uint32);
     }
 
     void read_corners(const Property& property) {

@@ -14,6 +14,7 @@
 #include "base/parallel.h"
 #include "base/text.h"
 #include "io/triangulate.h"
+#include "scene/mesh_topology.h"
 
 namespace ink {
 
@@ -153,14 +154,17 @@ void check_file_normals(PolygonMesh& polygons) {
         "Some normals of the file are zero or not finite; all were computed anew.");
 }
 
-void warn_about_dropped(std::size_t too_small, std::size_t without_area, PolygonMesh& polygons) {
+void warn_about_dropped(std::size_t too_small, std::size_t without_area, std::size_t all,
+                        PolygonMesh& polygons) {
     if (too_small > 0) {
         polygons.warnings.push_back(
             fmt::format("{} faces with fewer than 3 corners were left out.", too_small));
     }
     if (without_area > 0) {
         polygons.warnings.push_back(
-            fmt::format("{} triangles without area were left out.", without_area));
+            fmt::format("{} of {} triangles have no area, their corners coincide or lie on a line, "
+                        "and were left out.",
+                        without_area, all));
     }
 }
 
@@ -175,13 +179,29 @@ Mesh clean_mesh(const std::filesystem::path& file, PolygonMesh& polygons) {
     release(polygons.normals);
     mesh.vertices = std::move(polygons.positions);
     mesh.colors = std::move(polygons.colors);
+    const std::size_t all = mesh.triangles.size();
     const std::size_t without_area = weld(mesh);
-    warn_about_dropped(triangulator.too_small(), without_area, polygons);
-    stitch(mesh);
+    warn_about_dropped(triangulator.too_small(), without_area, all, polygons);
     if (mesh.triangles.empty()) {
         throw InputError(file, "no face has an area; check the export and its scale");
     }
     return mesh;
+}
+
+/// A surface that can be made of matter has none of these; what was meant is anyone's guess.
+void warn_about_branches(const Mesh& mesh, const MeshTopology& topology, PolygonMesh& polygons) {
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> edges;
+    for (std::size_t i = 0; i < 3 * mesh.triangles.size(); ++i) {
+        const auto edge = static_cast<Corner>(i);
+        if (topology.twin(edge) != MeshTopology::kBranching) continue;
+        edges.emplace_back(std::minmax(topology.vertex(edge), topology.vertex(next(edge))));
+    }
+    if (edges.empty()) return;
+    std::ranges::sort(edges);
+    edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+    polygons.warnings.push_back(
+        fmt::format("{} {} more than two faces; lines run along them as along creases.",
+                    edges.size(), edges.size() == 1 ? "edge has" : "edges have"));
 }
 
 void warn_if_far(const Object& object, PolygonMesh& polygons) {
@@ -234,7 +254,10 @@ FileContents mesh_contents(const std::filesystem::path& file, PolygonMesh polygo
     }
     check_file_normals(polygons);
     Mesh mesh = clean_mesh(file, polygons);
-    smooth_normals(mesh);
+    MeshTopology topology(mesh);
+    stitch(mesh, topology);
+    smooth_normals(mesh, topology);
+    warn_about_branches(mesh, topology, polygons);
 
     Object object;
     object.name = model_name(file);

@@ -32,6 +32,7 @@ struct PolygonMesh {
 
     std::optional<Rgb8> color;
     std::vector<std::string> warnings;
+    std::size_t faces_read = 0;     ///< by a library, before copies were made of them; 0: not known
     bool single_precision = false;  ///< coordinates were rounded to 32 bits before they came here
 
     /// False when the position cannot be used; then nothing is added.

@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "base/bounds.h"
+#include "base/memory.h"
 #include "base/parallel.h"
 #include "scene/mesh_topology.h"
 
@@ -74,8 +75,10 @@ class EdgeClassifier {
           settings_(settings),
           sharp_(chord(settings.sharp_deg)),
           least_(chord(settings.min_deg)),
-          turns_(mesh.triangles.size() * 3),
-          creases_(turns_.size()) {}
+          creases_(mesh.triangles.size() * 3) {
+        reserve_large(turns_, creases_.size());
+        turns_.resize(creases_.size());
+    }
 
     std::vector<std::uint8_t> run() {
         for_each_edge([&](Corner edge) { turns_[edge] = turn(edge); });

@@ -1,6 +1,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/memory.h"
 #include "base/parallel.h"
 #include "scene/mesh_topology.h"
 
@@ -49,8 +50,17 @@ class NormalSmoother {
             const float angle = facet.angles[corner % 3];
             sum = sum + facet.normal * (flipped ? -angle : angle);
         }
+        if (sum == Vec3f{}) {
+            for (const auto& [corner, flipped] : fan_) {
+                normal_of(corner) = own_normal(facets_[corner / 3].normal);
+            }
+            return;
+        }
+        // Almost always none is flipped, so one is enough.
+        const Vec3f mean = normalize(sum);
+        const std::uint32_t upright = pack_normal(mean);
         for (const auto& [corner, flipped] : fan_) {
-            normal_of(corner) = packed(flipped ? -sum : sum, facets_[corner / 3].normal);
+            normal_of(corner) = flipped ? pack_normal(-mean) : upright;
         }
     }
 
@@ -72,9 +82,8 @@ class NormalSmoother {
         }
     }
 
-    /// `sum` may be 0 where opposite triangles meet, `own` where a triangle has no area.
-    static std::uint32_t packed(Vec3f sum, Vec3f own) {
-        if (sum != Vec3f{}) return pack_normal(normalize(sum));
+    /// Where opposite triangles meet; 0 where a triangle has no area.
+    static std::uint32_t own_normal(Vec3f own) {
         return pack_normal(own == Vec3f{} ? Vec3f{0.0F, 0.0F, 1.0F} : own);
     }
 
@@ -88,10 +97,15 @@ class NormalSmoother {
 }  // namespace
 
 void smooth_normals(Mesh& mesh, const CreaseSettings& settings) {
-    const MeshTopology topology(mesh);
+    smooth_normals(mesh, MeshTopology(mesh), settings);
+}
+
+void smooth_normals(Mesh& mesh, const MeshTopology& topology, const CreaseSettings& settings) {
     const std::vector<Facet> facets = facets_of(mesh, topology);
     mesh.edge_flags = classify_edges(mesh, topology, facets, settings);
-    PackedNormals normals(mesh.triangles.size(), {kUnset, kUnset, kUnset});
+    PackedNormals normals;
+    reserve_large(normals, mesh.triangles.size());
+    normals.resize(mesh.triangles.size(), {kUnset, kUnset, kUnset});
     parallel_ranges(mesh.vertices.size(), 4096, [&](std::size_t begin, std::size_t end) {
         NormalSmoother smoother(mesh, topology, facets, normals);
         for (std::size_t vertex = begin; vertex < end; ++vertex) smoother.smooth(vertex);

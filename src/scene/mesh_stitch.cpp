@@ -18,32 +18,18 @@ namespace {
 
 constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 
-/// In a closed mesh each edge comes twice, so that the numbers made from edges cancel out.
-bool is_closed(const Mesh& mesh) {
-    std::uint64_t sum = 0;
-    for (const Mesh::Triangle& triangle : mesh.triangles) {
-        for (std::size_t k = 0; k < 3; ++k) {
-            const auto [low, high] = std::minmax(triangle[k], triangle[(k + 1) % 3]);
-            std::uint64_t h = (std::uint64_t{low} << 32U | high) * 0x9e3779b97f4a7c15U;
-            h = (h ^ h >> 29U) * 0xbf58476d1ce4e5b9U;
-            sum ^= h ^ h >> 32U;
-        }
-    }
-    return sum == 0;
-}
-
 /// The vertices on open edges, and which of them lie as near to each other as rounding leaves them.
 class OpenVertices {
   public:
-    OpenVertices(const Mesh& mesh, const StitchSettings& settings)
+    OpenVertices(const Mesh& mesh, const MeshTopology& topology, const StitchSettings& settings)
         : mesh_(mesh), reach_(mesh.vertices.size(), kClosed), parts_(mesh.vertices.size()) {
-        const MeshTopology topology(mesh);
         for (std::size_t i = 0; i < 3 * mesh.triangles.size(); ++i) {
             const auto edge = static_cast<Corner>(i);
             if (topology.twin(edge) != MeshTopology::kBoundary) continue;
             add(topology.vertex(edge), edge / 3);
             add(topology.vertex(next(edge)), edge / 3);
         }
+        if (open_.empty()) return;
         measure(settings);
         std::ranges::sort(open_);
     }
@@ -51,6 +37,7 @@ class OpenVertices {
     /// Moves the second of two vertices, each of which is the other's nearest, to the first.
     /// Returns how many moved.
     std::size_t close(std::vector<Vec3f>& vertices) const {
+        if (open_.empty()) return 0;
         std::vector<std::uint32_t> nearest(vertices.size(), kNone);
         parallel_ranges(open_.size(), 4096, [&](std::size_t begin, std::size_t end) {
             for (std::size_t n = begin; n < end; ++n) nearest[open_[n].second] = nearest_to(n);
@@ -85,6 +72,7 @@ class OpenVertices {
                 const std::uint32_t v = triangle[k];
                 const std::uint32_t w = triangle[(k + 1) % 3];
                 bounds.add(mesh_.vertices[v]);
+                if (reach_[v] == kClosed && reach_[w] == kClosed) continue;
                 const double side = settings.share_of_edge * distance(v, w);
                 for (const std::uint32_t end : {v, w}) {
                     reach_[end] = std::min(reach_[end], static_cast<float>(side));
@@ -129,17 +117,23 @@ class OpenVertices {
 
 }  // namespace
 
-std::size_t stitch(Mesh& mesh, const StitchSettings& settings) {
+std::size_t stitch(Mesh& mesh, MeshTopology& topology, const StitchSettings& settings) {
     // Where several surfaces meet in a corner, each turn joins two of them.
     constexpr int kTurns = 6;
     std::size_t moved = 0;
-    for (int turn = 0; turn < kTurns && !is_closed(mesh); ++turn) {
-        const std::size_t now = OpenVertices(mesh, settings).close(mesh.vertices);
+    for (int turn = 0; turn < kTurns; ++turn) {
+        const std::size_t now = OpenVertices(mesh, topology, settings).close(mesh.vertices);
         if (now == 0) break;
         moved += now;
         weld(mesh);
+        topology = MeshTopology(mesh);
     }
     return moved;
+}
+
+std::size_t stitch(Mesh& mesh, const StitchSettings& settings) {
+    MeshTopology topology(mesh);
+    return stitch(mesh, topology, settings);
 }
 
 }  // namespace ink

@@ -26,7 +26,7 @@ class MeshTopology {
     /// Linear in time and memory. Keeps a reference to `mesh`.
     explicit MeshTopology(const Mesh& mesh);
 
-    std::uint32_t vertex(Corner corner) const { return mesh_.triangles[corner / 3][corner % 3]; }
+    std::uint32_t vertex(Corner corner) const { return mesh_->triangles[corner / 3][corner % 3]; }
     /// The corners that meet in a vertex, in ascending order.
     std::span<const Corner> about(std::size_t vertex) const {
         return std::span(corners_).subspan(begin_[vertex], begin_[vertex + 1] - begin_[vertex]);
@@ -43,7 +43,7 @@ class MeshTopology {
     void match_edges();
     void match(std::span<const std::uint64_t> edges);
 
-    const Mesh& mesh_;
+    const Mesh* mesh_;
     std::vector<std::uint32_t> begin_;  ///< a vertex: its first place in `corners_`; and the end
     std::vector<Corner> corners_;
     std::vector<Corner> twins_;
@@ -63,5 +63,9 @@ std::vector<Facet> facets_of(const Mesh& mesh, const MeshTopology& topology);
 std::vector<std::uint8_t> classify_edges(const Mesh& mesh, const MeshTopology& topology,
                                          std::span<const Facet> facets,
                                          const CreaseSettings& settings);
+
+/// The functions of mesh.h for a mesh whose topology is known. `stitch` makes a new one if it must.
+std::size_t stitch(Mesh& mesh, MeshTopology& topology, const StitchSettings& settings = {});
+void smooth_normals(Mesh& mesh, const MeshTopology& topology, const CreaseSettings& settings = {});
 
 }  // namespace ink
