@@ -193,6 +193,53 @@ TEST(TessellatedSphere, HasNoCreaseAtAnyZoom) {
     }
 }
 
+/// Behind all else.
+Object backdrop(float z) {
+    return mesh_object({{-3, -3, z}, {3, -3, z}, {3, 3, z}, {-3, 3, z}}, {{0, 1, 2}, {0, 2, 3}});
+}
+
+/// A turned globe seen along z, with a plate behind its limb.
+Settings globe_view() {
+    Settings settings = plan_view({240, 240}, 2.0);
+    settings.view.eye = Vec3d{0, 0, 10};
+    settings.view.look_at = Vec3d{0, 0, 0};
+    settings.view.orthographic = 2.4;
+    return settings;
+}
+
+constexpr double kPixel = 2.4 / 240;  // in globe_view
+
+TEST(LimbOfAGlobe, HasNoIntersectionWithAPlateBehindIt) {
+    double wrong = 0.0;
+    double all = 0.0;
+    for (const std::uint32_t n : {20U, 48U, 120U}) {
+        for (const double gap : {0.05, 0.1, 0.2, 0.5, 1.0, 3.0}) {
+            const Scene scene({globe(n), backdrop(static_cast<float>(-gap * kPixel))});
+            auto found = lengths(scene, globe_view());
+            EXPECT_EQ(found[LineType::self_occlusion] + found[LineType::crease], 0.0);
+            wrong += found[LineType::intersection];
+            all += found[LineType::intersection] + found[LineType::silhouette];
+        }
+    }
+    EXPECT_GT(all, 18 * 620.0);
+    EXPECT_LT(wrong, 1e-3 * all);
+}
+
+// It is as steep as a hundred there: what is within a thousandth of a pixel of a facet's edge may
+// pass for a limb.
+TEST(LimbOfAGlobe, SunkIntoAPlateIsAnIntersection) {
+    for (const std::uint32_t n : {20U, 48U, 120U}) {
+        for (const double depth : {1.0, 3.0, 10.0, 40.0}) {
+            const Scene scene({globe(n), backdrop(static_cast<float>(depth * kPixel))});
+            auto found = lengths(scene, globe_view());
+            const double wrong = found[LineType::silhouette];
+            const double all = found[LineType::intersection] + wrong;
+            EXPECT_GT(all, 570.0);
+            EXPECT_LT(wrong, (depth > 1.0 ? 0.02 : 0.04) * all) << n << ", " << depth;
+        }
+    }
+}
+
 /// Hills in triangles, over which lines of sight graze.
 Object hills() {
     constexpr std::uint32_t kSide = 60;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 #include <numeric>
+#include <utility>
 
 namespace ink {
 
@@ -35,6 +36,8 @@ float turn(const Sample& a, const Sample& b) { return length(b.normal - a.normal
 float discontinuity(const Sample& a, const Sample& b, float scale) {
     return depth_jump(a, b) + 0.5F * scale * turn(a, b);
 }
+
+constexpr float kRounding = 4e-6F;  // of positions, in a scene of size 1
 
 constexpr auto kRadiansPerDegree = static_cast<float>(std::numbers::pi / 180.0);
 
@@ -111,9 +114,10 @@ bool cross_as_predicted(const Viewpoint& viewpoint, const LocateSettings& settin
     return crossing.strength > 0.0F;
 }
 
-Locator::Locator(const Viewpoint& viewpoint, const LocateSettings& settings)
+Locator::Locator(const Viewpoint& viewpoint, const LocateSettings& settings, WayOutFunction way_out)
     : viewpoint_(viewpoint),
       settings_(settings),
+      way_out_(std::move(way_out)),
       least_turn_(2.0F * std::sin(0.5F * settings.crease_min_deg * kRadiansPerDegree)) {
     jump_shares_.push_back(1.0F);
     for (int step = 0; step < settings.steps + settings.steep_steps; ++step) {
@@ -342,41 +346,75 @@ float Locator::gap(const Interval& interval) const {
     return std::abs(dot(chord, viewpoint_.ray_direction(interval.at_a)));
 }
 
+/// Distance of the two hits, seen from the viewer.
+float Locator::across(const Interval& interval) const {
+    const Vec3f chord = interval.at_b.position - interval.at_a.position;
+    const float along = gap(interval);
+    return std::sqrt(std::max(dot(chord, chord) - along * along, 0.0F));
+}
+
 /// Whether two surfaces touch at the crossing between them.
 bool Locator::surfaces_meet(const Interval& interval) const {
-    return planes_meet(interval) && !has_limb(interval);
+    return planes_meet(interval) && !has_limb(interval) && !ends_before(interval);
+}
+
+/// How far the plane of b's surface lies behind that of a's, at either end.
+Locator::Depths Locator::depths_between(const Interval& interval) const {
+    const Sample& a = interval.at_a;
+    const Sample& b = interval.at_b;
+    const Vec3f ray = viewpoint_.ray_direction(a);
+    const Vec3f chord = b.position - a.position;
+    const auto behind_plane_of = [&](const Sample& sample) {
+        const Vec3f normal = plane_normal(sample);
+        return dot(normal, chord) / std::min(dot(normal, ray), -1e-6F);
+    };
+    return {behind_plane_of(b), behind_plane_of(a)};
 }
 
 /// Each surface goes on as its tangent plane: where they cross in between, b's lies behind a at the
 /// first end and before it at the last, or the other way round.
 bool Locator::planes_meet(const Interval& interval) const {
-    constexpr float kRounding = 4e-6F;  // of positions, in a scene of size 1
-    const Sample& a = interval.at_a;
-    const Sample& b = interval.at_b;
-    const Vec3f ray = viewpoint_.ray_direction(a);
-    const Vec3f chord = b.position - a.position;
-    const float along = gap(interval);
-    const float across = std::sqrt(std::max(dot(chord, chord) - along * along, 0.0F));
-    const float contact = kRounding + across;
-    if (along <= contact) return true;
-    const auto behind_plane_of = [&](const Sample& sample) {
-        const Vec3f normal = plane_normal(sample);
-        return dot(normal, chord) / std::min(dot(normal, ray), -1e-6F);
-    };
-    const float at_a = behind_plane_of(b);
-    const float at_b = behind_plane_of(a);
+    const float contact = kRounding + across(interval);
+    if (gap(interval) <= contact) return true;
+    const auto [at_a, at_b] = depths_between(interval);
     const float beyond = settings_.meeting_slack * (at_b - at_a);
     const auto [least, most] = std::minmax({at_a, at_b, at_a - beyond, at_b + beyond});
     return least <= contact && most >= -contact;
 }
 
+/// Whether the nearer surface could reach the other one within the interval: as it goes on now, or
+/// turning away as a ball does, by twice as much as its slope tells.
+bool Locator::may_meet(const Interval& interval) const {
+    if (planes_meet(interval)) return true;
+    const float width = across(interval);
+    return gap(interval) <= kRounding + width * (1.0F + 2.0F * steeper_slope(interval));
+}
+
+/// Whether the nearer surface's triangle ends on the way before its plane meets the other one's: at
+/// a limb of a mesh it ends at an edge, beyond which the surface turns away.
+bool Locator::ends_before(const Interval& interval) const {
+    // Within one mesh, two triangles meet just where they end.
+    if (!way_out_ || interval.at_a.id == interval.at_b.id || gap(interval) <= kRounding ||
+        steeper_slope(interval) <= settings_.steep_slope) {
+        return false;
+    }
+    const bool a_in_front = interval.at_a.t <= interval.at_b.t;
+    const Vec2f from = a_in_front ? interval.a : interval.b;
+    const Vec2f way = (a_in_front ? interval.b : interval.a) - from;
+    const auto [at_a, at_b] = depths_between(interval);
+    const float change = a_in_front ? at_a - at_b : at_b - at_a;
+    const double meets = static_cast<double>(a_in_front ? at_a : at_b) / change;
+    const double ends =
+        2.0 * way_out_(a_in_front ? interval.at_a : interval.at_b, from, from + way * 2.0F);
+    return ends < 2.0 && ends < meets;
+}
+
 /// Whether the depths differ by more than those of one surface can that curves from one normal to
 /// the other.
 bool Locator::leaps(const Interval& interval) const {
-    const Vec3f chord = interval.at_b.position - interval.at_a.position;
     const float along = gap(interval);
-    const float across = std::sqrt(std::max(dot(chord, chord) - along * along, 0.0F));
-    return along * (facing(interval.at_a) + facing(interval.at_b)) > settings_.leap * 2.0F * across;
+    return along * (facing(interval.at_a) + facing(interval.at_b)) >
+           settings_.leap * 2.0F * across(interval);
 }
 
 /// Whether the nearer surface turns away within the interval, going by how its normal turned over
@@ -482,7 +520,7 @@ void Locator::refine_steep(const SampleFunction& sample) {
     for (std::size_t k = 0; k < intervals_.size(); ++k) {
         Interval& interval = intervals_[k];
         if (interval.state != State::located || interval.at_a.id == kBackground ||
-            interval.at_b.id == kBackground || !planes_meet(interval)) {
+            interval.at_b.id == kBackground || !may_meet(interval)) {
             continue;
         }
         if (steeper_slope(interval) <= settings_.steep_slope) continue;

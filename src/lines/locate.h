@@ -89,7 +89,9 @@ bool cross_as_predicted(const Viewpoint& viewpoint, const LocateSettings& settin
 /// dropped. Crossings come in the order of the edges, those of one edge from its first end on.
 class Locator {
   public:
-    Locator(const Viewpoint& viewpoint, const LocateSettings& settings);
+    /// `way_out` may be empty if nothing is known of triangles.
+    Locator(const Viewpoint& viewpoint, const LocateSettings& settings,
+            WayOutFunction way_out = {});
 
     /// `describe` may be empty if nothing is known of the grid's surfaces.
     void locate(const SampleGrid& grid, std::span<const SuspectEdge> edges,
@@ -143,6 +145,13 @@ class Locator {
     void move_end(Interval& interval, bool first, Vec2f point, const Sample& sample) const;
     bool surfaces_meet(const Interval& interval) const;
     bool planes_meet(const Interval& interval) const;
+    bool may_meet(const Interval& interval) const;
+    bool ends_before(const Interval& interval) const;
+    struct Depths {
+        float at_a, at_b;
+    };
+    Depths depths_between(const Interval& interval) const;
+    float across(const Interval& interval) const;
     bool leaps(const Interval& interval) const;
     bool has_limb(const Interval& interval) const;
     bool has_jump(const Interval& interval) const;
@@ -157,6 +166,7 @@ class Locator {
 
     Viewpoint viewpoint_;
     LocateSettings settings_;
+    WayOutFunction way_out_;
     float least_turn_;                ///< of a crease, as a chord
     std::vector<float> jump_shares_;  ///< that must be left after so many steps
     std::vector<Interval> intervals_;

@@ -76,7 +76,10 @@ class LineFinder {
           faces_(faces),
           sampler_(frame, edges.pipeline.camera, edges.q),
           pixel_sampler_(frame, edges.pipeline.camera),
-          locator_(edges.viewpoint, edges.locate),
+          locator_(edges.viewpoint, edges.locate,
+                   [&edges](const Sample& sample, Vec2f from, Vec2f to) {
+                       return edges.surfaces.way_out(edges.viewpoint, sample, from, to);
+                   }),
           sample_([this](std::span<const Vec2f> points, std::span<Sample> out) {
               sample(points, out);
           }),

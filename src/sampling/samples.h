@@ -21,6 +21,8 @@ struct Ball {
     friend constexpr bool operator==(const Ball& a, const Ball& b) = default;
 };
 
+inline constexpr std::uint32_t kNoTriangle = 0xFFFFFFFFU;
+
 /// What one ray saw, as far as lines depend on it.
 struct Sample {
     GeometryId id = kBackground;
@@ -32,6 +34,8 @@ struct Sample {
     /// Distance to the nearest open edge of the triangle that was hit, scene units; infinite where
     /// it has none.
     float rim = std::numeric_limits<float>::infinity();
+    /// The triangle that was hit; kNoTriangle elsewhere.
+    std::uint32_t object = kNoTriangle, triangle = kNoTriangle;
     /// Direction of the ray where it is not the viewer's: behind a mirror or glass. Else zero.
     Vec3f ray{};
 };
@@ -64,6 +68,10 @@ using SampleFunction = std::function<void(std::span<const Vec2f> points, std::sp
 /// Adds to a sample of a grid, by its index, what the grid does not keep: facet, ball
 /// and rim.
 using SurfaceFunction = std::function<void(std::size_t point, Sample& sample)>;
+
+/// Where the way from one point of the screen, the sample's own, to another leaves the triangle
+/// that the sample lies on, in [0, 1]; 1 if it does not, or there is no triangle.
+using WayOutFunction = std::function<double(const Sample& sample, Vec2f from, Vec2f to)>;
 
 /// Samples at the points of a regular lattice of q x q a pixel, plane by plane. Point (i, j) of the
 /// grid is lattice point (x0 + i, y0 + j), at ((x0 + i + 1/2) / q, (y0 + j + 1/2) / q) on screen.

@@ -126,7 +126,16 @@ void Surfaces::describe(const HitPacket& hits, int lane, Sample& sample) const {
         sample.ball = {sphere.centre, sphere.radius};
     } else if (const auto* mesh = std::get_if<Mesh>(&shape)) {
         if (!mesh->edge_flags.empty()) sample.rim = rim_distance(*mesh, hits, lane);
+        sample.object = hits.object[lane];
+        sample.triangle = hits.primitive[lane];
     }
+}
+
+double Surfaces::way_out(const Viewpoint& viewpoint, const Sample& sample, Vec2f from,
+                         Vec2f to) const {
+    if (sample.triangle == kNoTriangle) return 1.0;
+    const auto& mesh = std::get<Mesh>(scene_.objects()[sample.object].shape);
+    return way_out_of_triangle(viewpoint, mesh, mesh.triangles[sample.triangle], from, to);
 }
 
 bool Surfaces::is_mesh(std::uint32_t object) const {

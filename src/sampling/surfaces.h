@@ -15,10 +15,13 @@ class Surfaces {
     /// `normals`: which ones creases are found by, of objects that name none of their own.
     Surfaces(const Scene& scene, NormalSource normals);
 
-    /// Adds the sphere or the open edge that a hit lies on.
+    /// Adds the sphere, or the triangle and its open edge, that a hit lies on.
     void describe(const HitPacket& hits, int lane, Sample& sample) const;
 
     bool is_mesh(std::uint32_t object) const;
+
+    /// See WayOutFunction. The sample must have been described.
+    double way_out(const Viewpoint& viewpoint, const Sample& sample, Vec2f from, Vec2f to) const;
 
     /// The sphere that was hit; of radius 0 where it was none.
     Ball ball(std::uint32_t object, std::uint32_t primitive) const {
