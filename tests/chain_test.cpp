@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "lines/chain.h"
+#include "lines/corners.h"
 #include "lines/fit.h"
 #include "lines/fit_chains.h"
 #include "lines/junctions.h"
@@ -70,6 +71,23 @@ std::function<Vec2d(double)> ellipse(Vec2d centre, double a, double b) {
 }
 
 constexpr double kTurn = 2.0 * std::numbers::pi;
+
+const std::vector<Vec2d> kCorners{{10.2, 10.8}, {90.7, 20.4}, {70.9, 80.3}, {21.1, 61.6}};
+
+/// Round a polygon, one side for each unit of s.
+Vec2d polygon(double s) {
+    const auto k = static_cast<std::size_t>(s) % kCorners.size();
+    const double share = s - std::floor(s);
+    return kCorners[k] * (1.0 - share) + kCorners[(k + 1) % kCorners.size()] * share;
+}
+
+double distance_from_corners(Vec2f point) {
+    double nearest = 1e9;
+    for (const Vec2d corner : kCorners) {
+        nearest = std::min(nearest, length(to_double(point) - corner));
+    }
+    return nearest;
+}
 
 Vec2d on_curve(Vec2f start, const CurvePiece& piece, double u) {
     const double v = 1.0 - u;
@@ -238,6 +256,76 @@ TEST(Junctions, MoveToWhereTheirLinesPoint) {
     }
 }
 
+// Corners
+
+TEST(Corners, SplitAClosedLineIntoItsSides) {
+    ChainGraph graph = chain_segments(along(crossings(polygon, 0.5, 4.5), true), 1.0F);
+    const double round = length_of(graph.chains[0]);
+    split_at_corners(graph, 1);
+    ASSERT_EQ(graph.chains.size(), 4U);
+    ASSERT_EQ(graph.paths.size(), 1U);
+    ASSERT_EQ(graph.paths[0].steps.size(), 4U);
+    const std::vector<Curve> curves = fit_chains(graph, {}, 1);
+    for (std::size_t k = 0; k < 4; ++k) {
+        const PathStep& step = graph.paths[0].steps[k];
+        const Chain& side = graph.chains[step.chain];
+        const Chain& next = graph.chains[graph.paths[0].steps[(k + 1) % 4].chain];
+        EXPECT_TRUE(step.at_corner);
+        EXPECT_FALSE(side.closed);
+        EXPECT_EQ(side.last_vertex, next.first_vertex);
+        EXPECT_EQ(side.points.back(), next.points.front());
+        EXPECT_LT(distance_from_corners(side.points.front()), 0.06);
+        EXPECT_EQ(side.t.size(), side.points.size());
+        EXPECT_EQ(side.strengths.size(), side.points.size());
+        EXPECT_NEAR(side.whole.length, round, 0.5);
+        EXPECT_EQ(curves[step.chain].pieces.size(), 1U);
+        EXPECT_TRUE(curves[step.chain].pieces[0].straight);
+    }
+}
+
+TEST(Corners, SplitAnOpenLineWhicheverWayItRuns) {
+    std::vector<Vec2f> points = crossings(polygon, 0.2, 1.8);
+    for (const bool reversed : {false, true}) {
+        ChainGraph graph = chain_segments(along(points, false), 1.0F);
+        split_at_corners(graph, 1);
+        ASSERT_EQ(graph.chains.size(), 2U) << reversed;
+        EXPECT_EQ(graph.chains[0].last_vertex, graph.chains[1].first_vertex);
+        EXPECT_LT(distance_from_corners(graph.chains[0].points.back()), 0.06);
+        const std::vector<Curve> curves = fit_chains(graph, {}, 1);
+        EXPECT_EQ(curves[0].end(), curves[1].start);
+        std::ranges::reverse(points);
+    }
+}
+
+TEST(Corners, LeaveALineWithOneOfThemClosedAndLetItStartThere) {
+    // A drop with its tip at (10.3, 50.6).
+    const auto drop = [](double angle) {
+        const double swing = std::abs(std::sin(0.5 * angle));
+        return Vec2d{10.3 + 60.0 * swing * swing, 50.6 + 25.0 * swing * std::sin(angle)};
+    };
+    ChainGraph graph = chain_segments(along(crossings(drop, 2.0, 2.0 + kTurn), true), 1.0F);
+    split_at_corners(graph, 1);
+    ASSERT_EQ(graph.chains.size(), 1U);
+    EXPECT_TRUE(graph.chains[0].closed);
+    EXPECT_LT(length(to_double(graph.chains[0].points.front()) - Vec2d{10.3, 50.6}), 0.3);
+    const std::vector<Curve> curves = fit_chains(graph, {}, 1);
+    EXPECT_EQ(curves[0].start, graph.chains[0].points.front());
+    EXPECT_EQ(curves[0].end(), curves[0].start);
+}
+
+TEST(Corners, AreNotSeenOnSmoothLines) {
+    for (const double radius : {1.7, 3.0, 10.0, 50.0, 200.0}) {
+        const Vec2d centre{2 * radius + 3.3, radius + 4.7};
+        for (const double longer : {1.0, 1.5}) {
+            const auto points = crossings(ellipse(centre, longer * radius, radius), 0, kTurn);
+            ChainGraph graph = chain_segments(along(points, true), 1.0F);
+            split_at_corners(graph, 1);
+            ASSERT_EQ(graph.chains.size(), 1U) << radius;
+            EXPECT_TRUE(graph.chains[0].closed);
+        }
+    }
+}
+
 // Curves
 
 TEST(Fit, NeedsAtMostSixNodesForAFullCircle) {
@@ -281,22 +369,12 @@ TEST(Fit, MakesAStraightRunOnePiece) {
 }
 
 TEST(Fit, KeepsTheCornersOfPolygons) {
-    const std::vector<Vec2d> corners{{10.2, 10.8}, {90.7, 20.4}, {70.9, 80.3}, {21.1, 61.6}};
-    const auto polygon = [&](double s) {
-        const auto k = static_cast<std::size_t>(s) % corners.size();
-        const double share = s - std::floor(s);
-        return corners[k] * (1.0 - share) + corners[(k + 1) % corners.size()] * share;
-    };
     const auto curves = fit(crossings(polygon, 0.5, 4.5), true);
     ASSERT_EQ(curves.size(), 1U);
     ASSERT_EQ(curves[0].pieces.size(), 4U);
     for (const CurvePiece& piece : curves[0].pieces) {
         EXPECT_TRUE(piece.straight);
-        double nearest = 1e9;
-        for (const Vec2d corner : corners) {
-            nearest = std::min(nearest, length(to_double(piece.end) - corner));
-        }
-        EXPECT_LT(nearest, 0.06);
+        EXPECT_LT(distance_from_corners(piece.end), 0.06);
     }
 }
 

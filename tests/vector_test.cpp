@@ -71,14 +71,65 @@ TEST(LineArt, ASphereIsOneClosedChainOfAtMostSixNodes) {
     EXPECT_EQ(behind(art.chains[0]), kBackground);
 }
 
-TEST(LineArt, HardlyChangesWithTheLattice) {
-    Settings settings = picture(1024);
-    const LineArt coarse = draw(acetaminophen(), settings).art;
-    settings.lattice = 3;
-    const LineArt fine = draw(acetaminophen(), settings).art;
-    const double count = static_cast<double>(coarse.chains.size());
-    EXPECT_NEAR(static_cast<double>(fine.chains.size()) / count, 1.0, 0.02);
-    EXPECT_NEAR(total_length(fine.chains) / total_length(coarse.chains), 1.0, 0.02);
+Object glyphs(const UnitShape& shape, std::vector<Placement> placements) {
+    Object object;
+    object.name = "shapes";
+    object.kind = ObjectKind::shape;
+    object.shape = Glyphs{shape, std::move(placements), {}, {}};
+    return object;
+}
+
+/// Scenes without edges.
+std::vector<std::pair<std::string, Scene>> smooth_scenes() {
+    const Placement tilted{{1.0F, 0.1F, 0.2F}, {-0.2F, 0.5F, 0.1F}, {0.1F, -0.2F, 0.8F}, {}};
+    const Placement nearer{
+        {0.3F, 0.1F, 0}, {-0.2F, 0.9F, 0.1F}, {0, -0.1F, 0.4F}, {0.6F, 0.4F, 0.5F}};
+    const Vec3d axis{0, 0.8, 0.6};
+    std::vector<std::pair<std::string, Scene>> scenes;
+    const auto add = [&](const char* name, std::vector<Object> objects) {
+        scenes.emplace_back(name, Scene(std::move(objects)));
+    };
+    add("torus", {glyphs({GlyphKind::torus, 0.4}, {placement_about({}, axis, 1.0)})});
+    add("two tori",
+        {glyphs({GlyphKind::torus, 0.3},
+                {placement_about({}, axis, 1.0), placement_about({1, 0, 0}, {1, 0.3, 0.2}, 0.9)})});
+    add("overlapping spheres", {sphere_object({{{0, 0, 0}, 1.0F},
+                                               {{1.2F, 0.3F, 0.4F}, 0.8F},
+                                               {{-0.7F, 0.8F, 0.9F}, 0.6F},
+                                               {{0.5F, -1.0F, 0.4F}, 0.5F}})});
+    add("ellipsoids", {glyphs({GlyphKind::ellipsoid}, {tilted, nearer})});
+    add("superellipsoids", {glyphs({GlyphKind::superellipsoid, 0.5, 0.3}, {tilted, nearer})});
+    scenes.emplace_back("acetaminophen", acetaminophen());
+    if (auto crambin = shared_scene("molecules/1crn.pdb")) {
+        scenes.emplace_back("1crn", std::move(*crambin));
+    }
+    return scenes;
+}
+
+TEST(LineArt, OfSmoothScenesHardlyChangesWithTheLattice) {
+    Settings settings = picture(512);
+    settings.fill = Fill::none;
+    for (const auto& [name, scene] : smooth_scenes()) {
+        settings.lattice = 1;
+        const LineArt coarse = draw(scene, settings).art;
+        settings.lattice = 3;
+        const LineArt fine = draw(scene, settings).art;
+        const double count = static_cast<double>(coarse.chains.size());
+        EXPECT_NEAR(static_cast<double>(fine.chains.size()) / count, 1.0, 0.02) << name;
+        EXPECT_NEAR(total_length(fine.chains) / total_length(coarse.chains), 1.0, 0.02) << name;
+    }
+}
+
+TEST(LineArt, OfABoxIsSplitAtTheCornersOfItsOutline) {
+    // Three faces show: three creases, and six sides of the outline, three of whose corners are no
+    // junctions.
+    Settings settings = picture(512);
+    settings.view.view = View::iso;
+    const LineArt art = draw(Scene({glyphs({GlyphKind::box}, {{}})}), settings).art;
+    const auto ends = degrees(art.chains);
+    EXPECT_EQ(art.chains.size(), 9U);
+    EXPECT_EQ(ends.size(), 7U);
+    for (const Curve& curve : art.curves) EXPECT_EQ(curve.pieces.size(), 1U);
 }
 
 TEST(LineArt, KnowsNamesDepthsAndTheNearerSide) {

@@ -28,12 +28,18 @@ struct Chain {
     std::vector<float> width_scales;  ///< likewise; empty: 1
     /// Junctions that the ends share with other chains: equal numbers, bitwise equal points.
     std::uint32_t first_vertex = 0, last_vertex = 0;
+    /// The line that it was split off at a corner, if it was.
+    struct Whole {
+        double length = 0.0;  ///< pixels
+        bool closed = false;
+    } whole{};
 };
 
 /// A chain of a path, and whether the path runs against it.
 struct PathStep {
     std::uint32_t chain = 0;
     bool reversed = false;
+    bool at_corner = false;  ///< begins at a corner where a chain was split
 };
 
 /// Chains that make one line for the eye: where another line ends on it, or its type changes, a

@@ -14,9 +14,10 @@ constexpr double kStraightShare = 0.6;
 }  // namespace
 
 void CurveFitter::fit(std::span<const Vec2f> points, bool closed, std::span<const std::size_t> cuts,
-                      std::vector<Curve>& curves) {
+                      std::span<const std::size_t> corners, std::vector<Curve>& curves) {
     line_.take(points, closed, cuts);
-    line_.find_corners(settings_.corner_deg * std::numbers::pi / 180.0);
+    for (const std::size_t cut : corners) line_.mark_corner(cut);
+    line_.add_corners(line_.corners(kCornerDeg * std::numbers::pi / 180.0));
     const std::span<const Knot> knots = line_.knots();
     curve_.start = to_float(knots.front().point);
     curve_.pieces.clear();

@@ -13,10 +13,6 @@ namespace ink {
 
 struct FitSettings {
     double tolerance = 0.1;  ///< largest distance of a point from its curve, pixels
-    /// A line that turns by more than this between two neighbouring points, beyond what its curve
-    /// on both sides explains, has a corner there. The error of crossings moves the measured angle
-    /// by a degree or two; smaller corners pass for round within the tolerance.
-    double corner_deg = 22.0;
 };
 
 /// Fits piecewise cubic curves to polylines whose points have a small error: least squares, as few
@@ -30,7 +26,12 @@ class CurveFitter {
     /// Open: the first is 0 and the last points.size() - 1. Closed: the first is 0 and the last
     /// points.size(), which means 0 again. Appends one curve from each cut to the next.
     void fit(std::span<const Vec2f> points, bool closed, std::span<const std::size_t> cuts,
-             std::vector<Curve>& curves);
+             std::vector<Curve>& curves) {
+        fit(points, closed, cuts, {}, curves);
+    }
+    /// The same where some of the cuts are known to be corners.
+    void fit(std::span<const Vec2f> points, bool closed, std::span<const std::size_t> cuts,
+             std::span<const std::size_t> corners, std::vector<Curve>& curves);
 
   private:
     void fit_between(std::size_t first, std::size_t last);

@@ -5,37 +5,9 @@
 #include <utility>
 
 #include "base/parallel.h"
+#include "lines/path_points.h"
 
 namespace ink {
-
-namespace {
-
-/// The points of a path, each once, and where its chains begin and end among them.
-struct PathPoints {
-    std::vector<Vec2f> points;
-    std::vector<std::size_t> cuts;
-
-    void take(const ChainGraph& graph, const Path& path) {
-        points.clear();
-        cuts.assign(1, 0);
-        for (const PathStep& step : path.steps) {
-            const Chain& chain = graph.chains[step.chain];
-            if (!points.empty()) points.pop_back();
-            if (step.reversed) {
-                points.insert(points.end(), chain.points.rbegin(), chain.points.rend());
-            } else {
-                points.insert(points.end(), chain.points.begin(), chain.points.end());
-            }
-            cuts.push_back(points.size() - 1);
-        }
-        if (!path.closed) return;
-        const bool one_chain = graph.chains[path.steps.front().chain].closed;
-        if (!one_chain) points.pop_back();
-        cuts.back() = points.size();
-    }
-};
-
-}  // namespace
 
 std::vector<Curve> fit_chains(const ChainGraph& graph, const FitSettings& settings, int threads) {
     struct Worker {
@@ -58,7 +30,7 @@ std::vector<Curve> fit_chains(const ChainGraph& graph, const FitSettings& settin
                          worker.points.take(graph, path);
                          worker.curves.clear();
                          worker.fitter.fit(worker.points.points, path.closed, worker.points.cuts,
-                                           worker.curves);
+                                           worker.points.corners, worker.curves);
                          for (std::size_t k = 0; k < path.steps.size(); ++k) {
                              const PathStep& step = path.steps[k];
                              Curve& curve = worker.curves[k];

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 namespace ink {
@@ -48,6 +49,11 @@ std::size_t KnotLine::step(std::size_t k, int direction) const {
         k = direction > 0 ? 0 : last;
     }
     return direction > 0 ? k + 1 : k - 1;
+}
+
+bool KnotLine::starts_anywhere() const {
+    return closed_ && std::none_of(knots_.begin() + 1, knots_.end() - 1,
+                                   [](const Knot& knot) { return knot.cut; });
 }
 
 /// How the line comes to a knot from one side.
@@ -118,54 +124,68 @@ KnotLine::Corner KnotLine::corner_between(std::size_t from, std::size_t to) cons
 }
 
 /// Windows that reach over a corner see something of it, too: drops what is near a sharper one.
-void KnotLine::keep_sharpest(std::vector<Corner>& corners) {
+/// After `round` knots a line begins again.
+void KnotLine::keep_sharpest(std::vector<Corner>& corners, std::size_t round) {
     constexpr std::size_t kSame = 2;  // knots, between which there is one corner at most
     constexpr double kEcho = 0.5;     // of the sharper one, within reach of its windows
+    const auto yields_to = [&](const Corner& corner, const Corner& other) {
+        const std::size_t apart =
+            other.after > corner.after ? other.after - corner.after : corner.after - other.after;
+        const std::size_t knots = std::min(apart, round - apart);
+        const bool sharper = other.excess > corner.excess;
+        // Of a corner at a cut, the place is known.
+        if (knots <= kSame) return corner.at_cut == other.at_cut ? sharper : other.at_cut;
+        return sharper && knots <= kReach + 1 && corner.excess < kEcho * other.excess;
+    };
+    const std::size_t count = corners.size();
+    const std::size_t window = std::min<std::size_t>(kReach + 1, count - 1);
     std::vector<Corner> kept;
-    for (std::size_t k = 0; k < corners.size(); ++k) {
-        const auto yields_to = [&](const Corner& other) {
-            const std::size_t apart = other.after > corners[k].after
-                                          ? other.after - corners[k].after
-                                          : corners[k].after - other.after;
-            const bool sharper = other.excess > corners[k].excess;
-            return sharper && (apart <= kSame ||
-                               (apart <= kReach + 1 && corners[k].excess < kEcho * other.excess));
-        };
-        const auto begin = corners.begin() + static_cast<std::ptrdiff_t>(k);
-        const auto before = std::min<std::size_t>(k, kReach + 1);
-        const auto after = std::min<std::size_t>(corners.size() - k, kReach + 2);
-        if (std::none_of(begin - static_cast<std::ptrdiff_t>(before),
-                         begin + static_cast<std::ptrdiff_t>(after), yields_to)) {
-            kept.push_back(corners[k]);
+    for (std::size_t k = 0; k < count; ++k) {
+        bool yields = false;
+        for (std::size_t n = 1; n <= window && !yields; ++n) {
+            yields = yields_to(corners[k], corners[(k + n) % count]) ||
+                     yields_to(corners[k], corners[(k + count - n) % count]);
         }
+        if (!yields) kept.push_back(corners[k]);
     }
     corners = std::move(kept);
 }
 
-void KnotLine::find_corners(double least_turn) {
+std::vector<KnotLine::Corner> KnotLine::corners(double least_turn) const {
     const std::size_t last = knots_.size() - 1;
-    if (last < 3) return;
     std::vector<Corner> corners;
+    if (last < 3) return corners;
+    // Where a closed line without junctions starts is no matter.
+    const bool any_start = starts_anywhere();
+    const auto is_cut = [&](std::size_t k) {
+        return knots_[k].cut && !(any_start && (k == 0 || k == last));
+    };
     for (std::size_t k = 0; k < last; ++k) {
         Corner corner;
-        if (knots_[k].cut) {
+        if (knots_[k].corner) continue;
+        if (is_cut(k)) {
             const std::size_t from = step(k, -1);
             if (from == kNowhere) continue;
             corner = corner_between(from, k + 1);
-            corner.after = k;
-            corner.point.reset();
-        } else if (!knots_[k + 1].cut) {
+            corner = {k, corner.excess, true};
+        } else if (!is_cut(k + 1)) {
             corner = corner_between(k, k + 1);
         }
         if (corner.excess > least_turn) corners.push_back(corner);
     }
-    keep_sharpest(corners);
-    if (corners.empty()) return;
-    add_corners(corners);
-    start_at_corner();
+    if (corners.empty()) return corners;
+    constexpr auto kNever = std::numeric_limits<std::size_t>::max();
+    keep_sharpest(corners, closed_ ? last : kNever);
+    return corners;
+}
+
+void KnotLine::mark_corner(std::size_t cut) {
+    knots_[cut].corner = true;
+    if (closed_ && cut == 0) knots_.back().corner = true;
 }
 
 void KnotLine::add_corners(std::span<const Corner> corners) {
+    if (corners.empty()) return;
     std::vector<Knot> knots;
     knots.reserve(knots_.size() + corners.size());
     auto corner = corners.begin();
@@ -181,12 +201,12 @@ void KnotLine::add_corners(std::span<const Corner> corners) {
     }
     knots_ = std::move(knots);
     if (closed_ && knots_.front().corner) knots_.back().corner = true;
+    start_at_corner();
 }
 
 /// A closed line without junctions may start anywhere: at a corner it needs no other break.
 void KnotLine::start_at_corner() {
-    const auto inner = [](const Knot& knot) { return knot.cut; };
-    if (!closed_ || std::count_if(knots_.begin() + 1, knots_.end() - 1, inner) > 0) return;
+    if (!starts_anywhere()) return;
     knots_.pop_back();
     knots_.front().cut = false;
     const auto first = std::ranges::find_if(knots_, &Knot::corner);

@@ -17,16 +17,31 @@ struct Knot {
     bool corner = false;  ///< the tangent jumps here, or the line ends
 };
 
+/// A line that turns by more than this between two neighbouring points, beyond what its curves on
+/// both sides explain, has a corner there. The error of crossings moves the measured angle by a
+/// degree or two; smaller corners pass for round within the tolerance of curves.
+inline constexpr double kCornerDeg = 22.0;
+
 /// Points along a line, known with a small error, and what they tell about the line: where it has
 /// corners, and its tangents elsewhere.
 class KnotLine {
   public:
+    struct Corner {
+        std::size_t after = 0;  ///< lies between this knot and the next one
+        double excess = 0.0;    ///< radians of its turn that curves do not explain
+        bool at_cut = false;
+        std::optional<Vec2d> point{};  ///< nothing: it is the knot `after` itself
+    };
+
     /// See CurveFitter::fit.
     void take(std::span<const Vec2f> points, bool closed, std::span<const std::size_t> cuts);
-    /// Marks or adds a knot at each place where the line turns by more than this, in radians,
-    /// beyond what its curves on both sides explain. A closed line without cuts then starts at one
-    /// of them.
-    void find_corners(double least_turn);
+    /// Where the line turns by more than this, in radians, in the order along it. At a cut, a
+    /// corner is the cut.
+    std::vector<Corner> corners(double least_turn) const;
+    /// Makes knots of corners. A closed line without cuts then starts at one of them.
+    void add_corners(std::span<const Corner> corners);
+    /// Makes a corner of a cut.
+    void mark_corner(std::size_t cut);
 
     /// A closed line's first knot comes again as the last.
     std::span<const Knot> knots() const { return knots_; }
@@ -42,17 +57,11 @@ class KnotLine {
     static constexpr int kReach = 4;
 
   private:
-    struct Corner {
-        std::size_t after = 0;  ///< lies between this knot and the next one, or is this knot
-        double excess = 0.0;    ///< radians
-        std::optional<Vec2d> point{};
-    };
-
+    bool starts_anywhere() const;  ///< closed, without cuts but its start
     std::size_t step(std::size_t k, int direction) const;
     std::optional<Parabola> side(std::size_t at, int direction) const;
     Corner corner_between(std::size_t from, std::size_t to) const;
-    static void keep_sharpest(std::vector<Corner>& corners);
-    void add_corners(std::span<const Corner> corners);
+    static void keep_sharpest(std::vector<Corner>& corners, std::size_t round);
     void start_at_corner();
 
     bool closed_ = false;

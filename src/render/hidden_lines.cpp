@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "lines/chain.h"
+#include "lines/corners.h"
 #include "lines/dashes.h"
 #include "lines/junctions.h"
 
@@ -94,10 +95,11 @@ std::vector<Segment> hidden_strokes(const Edges& edges, std::span<const Segment>
     const Settings& settings = edges.pipeline.settings;
     ChainGraph graph = chain_segments(lines, spacing);
     place_junctions(graph, spacing);
+    split_at_corners(graph, settings.threads);
     std::vector<Segment> strokes;
     for (const Chain& chain : graph.chains) {
         const double size = length_of(chain);
-        if (size < kShortestHidden) continue;
+        if (std::max(size, chain.whole.length) < kShortestHidden) continue;
         const std::size_t first = strokes.size();
         cut_into_strokes(chain, nullptr, strokes);
         const LineStyle& style = edges.ink.styles[edges.style_of(strokes[first])];

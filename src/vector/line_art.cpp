@@ -4,6 +4,7 @@
 #include <iterator>
 #include <utility>
 
+#include "lines/corners.h"
 #include "lines/fit_chains.h"
 #include "lines/junctions.h"
 #include "sampling/line_ids.h"
@@ -54,6 +55,7 @@ CurveGraph curves_of(const std::vector<Segment>& segments, float spacing,
     CurveGraph layer;
     layer.graph = chain_segments(segments, spacing);
     place_junctions(layer.graph, spacing);
+    split_at_corners(layer.graph, settings.threads);
     layer.curves = fit_chains(layer.graph, {.tolerance = kFitShare * settings.curve_tolerance_px},
                               settings.threads);
     return layer;
@@ -73,7 +75,7 @@ void add_lines(const Settings& settings, const LineIds& ids, const LineThinning&
         if (!settings.lines.has(chain.type)) continue;
         const double least = chain.hidden ? std::max(shortest, kShortestHidden) : shortest;
         const double size = least > 0.0 ? length_of(chain) : 0.0;
-        if (size < least) continue;
+        if (std::max(size, chain.whole.length) < least) continue;
         const GeometryId owner = front(chain) != kBackground ? front(chain) : behind(chain);
         const auto object = static_cast<int>(art.names.object_of(owner)) + 1;
         const StrokeStyle style =

@@ -21,6 +21,7 @@ bool is_border_of_tones(const Chain& chain) {
 struct Line {
     Chain chain;
     Curve curve;
+    bool at_corner = false;  ///< its path turns where it begins
 };
 
 Line backwards(Line line) {
@@ -49,9 +50,11 @@ std::vector<std::uint32_t> count_ends(const ChainGraph& graph) {
     return ends;
 }
 
-/// Whether a line goes on as the other one, and no third one ends between them.
-bool goes_on(const Chain& a, const Chain& b, std::span<const std::uint32_t> ends) {
-    return a.type == b.type && a.left == b.left && a.right == b.right &&
+/// Whether a line goes on as the next one, and neither a third one nor a corner is between them.
+bool goes_on(const Line& line, const Line& next, std::span<const std::uint32_t> ends) {
+    const Chain& a = line.chain;
+    const Chain& b = next.chain;
+    return !next.at_corner && a.type == b.type && a.left == b.left && a.right == b.right &&
            a.last_vertex < ends.size() && ends[a.last_vertex] == 2;
 }
 
@@ -90,7 +93,8 @@ void close(Line& line) {
 std::vector<Line> lines_along(CurveGraph& lines, const Path& path) {
     std::vector<Line> along;
     for (const PathStep& step : path.steps) {
-        Line line{std::move(lines.graph.chains[step.chain]), std::move(lines.curves[step.chain])};
+        Line line{std::move(lines.graph.chains[step.chain]), std::move(lines.curves[step.chain]),
+                  step.at_corner};
         line.chain.left = Tones::geometry(line.chain.left);
         line.chain.right = Tones::geometry(line.chain.right);
         along.push_back(step.reversed ? backwards(std::move(line)) : std::move(line));
@@ -104,7 +108,7 @@ std::vector<Line> joined(std::vector<Line> along, bool closed,
     if (closed) {
         // It may begin in the middle of a line.
         const auto begins = [&](std::size_t k) {
-            return !goes_on(along[k == 0 ? along.size() - 1 : k - 1].chain, along[k].chain, ends);
+            return !goes_on(along[k == 0 ? along.size() - 1 : k - 1], along[k], ends);
         };
         std::size_t first = 0;
         while (first < along.size() && !begins(first)) ++first;
@@ -115,7 +119,7 @@ std::vector<Line> joined(std::vector<Line> along, bool closed,
     }
     std::vector<Line> joined;
     for (Line& line : along) {
-        if (!joined.empty() && goes_on(joined.back().chain, line.chain, ends)) {
+        if (!joined.empty() && goes_on(joined.back(), line, ends)) {
             append(joined.back(), line);
         } else {
             joined.push_back(std::move(line));
@@ -130,7 +134,8 @@ std::vector<Line> joined(std::vector<Line> along, bool closed,
 void drop_spots(CurveGraph& lines) {
     for (std::size_t k = 0; k < lines.graph.chains.size(); ++k) {
         const Chain& chain = lines.graph.chains[k];
-        if (chain.closed && is_border_of_tones(chain) && length_of(chain) < kLeastSpot) {
+        if (!is_border_of_tones(chain) || !(chain.closed || chain.whole.closed)) continue;
+        if (std::max(length_of(chain), chain.whole.length) < kLeastSpot) {
             lines.curves[k].pieces.clear();
         }
     }
