@@ -481,7 +481,7 @@ TEST(Hexahedra, AreHitWhereBruteForceHitsTheirTriangles) {
         std::vector<HitPacket> expected(rays.size());
         make_brute_force_tracer(mesh)->intersect(rays, expected, Coherence::incoherent);
         for (const PacketWidth width :
-             {PacketWidth::one, PacketWidth::eight, PacketWidth::sixteen}) {
+             {PacketWidth::four, PacketWidth::eight, PacketWidth::sixteen}) {
             std::vector<HitPacket> hits(rays.size());
             make_embree_tracer(exact, width)->intersect(rays, hits, Coherence::incoherent);
             int seen = 0;
