@@ -7,9 +7,11 @@
 #include <cmath>
 #include <cstdio>
 #include <fstream>
+#include <initializer_list>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "accel/tracer.h"
@@ -29,20 +31,20 @@ void set(Settings& settings, std::string_view name, std::string_view value) {
 
 struct Measured {
     Film film;
-    double ms;  ///< median
+    double ms;          ///< median
+    RenderStats stats;  ///< of the fastest
 };
 
 Measured measure(const Scene& scene, const Tracer& tracer, const Settings& settings, int rounds,
                  const PixelFormats& formats) {
-    std::vector<double> times;
-    RenderStats stats;
-    Film film = render(scene, tracer, settings, formats, {}, &stats);
-    for (int round = 0; round < rounds; ++round) {
-        render(scene, tracer, settings, formats, {}, &stats);
-        times.push_back(stats.render_ms);
+    std::vector<RenderStats> frames(static_cast<std::size_t>(rounds) + 1);
+    Film film = render(scene, tracer, settings, formats, {}, frames.data());
+    for (RenderStats& stats : frames) {
+        if (&stats != frames.data()) render(scene, tracer, settings, formats, {}, &stats);
     }
-    std::ranges::sort(times);
-    return {std::move(film), times.empty() ? stats.render_ms : times[times.size() / 2]};
+    if (rounds > 0) frames.erase(frames.begin());  // the first one warms caches up
+    std::ranges::sort(frames, {}, &RenderStats::render_ms);
+    return {std::move(film), frames[frames.size() / 2].render_ms, frames[0]};
 }
 
 /// Linear red, green and blue, one after the other.
@@ -97,18 +99,29 @@ Settings frontier_settings(int side) {
     set(settings, "line-width", "6px");
     set(settings, "line-density", "1");
     set(settings, "line-blend", "linear");
+    set(settings, "ambient", "0");
     return settings;
 }
 
 constexpr PixelFormats kLinear{false, true};
 
+/// What to measure, and how.
+struct Options {
+    int side = 384;
+    int rounds = 5;
+    std::string ways;       ///< only those whose name has this in it
+    std::string reference;  ///< file that keeps the reference of the paper's profile
+};
+
 Json compare(const Scene& scene, const Tracer& tracer, const Settings& base,
-             const std::vector<float>& reference, int rounds, std::string_view profile) {
+             const std::vector<float>& reference, const Options& options,
+             std::string_view profile) {
     Json rows = Json::array();
     for (const Way& way : ways()) {
+        if (way.name.find(options.ways) == std::string::npos) continue;
         Settings settings = base;
         for (const auto& [name, value] : way.settings) set(settings, name, value);
-        const Measured measured = measure(scene, tracer, settings, rounds, kLinear);
+        const Measured measured = measure(scene, tracer, settings, options.rounds, kLinear);
         const double error = rmse(colors(measured.film), reference);
         fmt::print("  {:<28}{:>10.2f} ms   RMSE {:.5f}\n", way.name, measured.ms, error);
         std::fflush(stdout);
@@ -121,24 +134,43 @@ Json compare(const Scene& scene, const Tracer& tracer, const Settings& base,
     return rows;
 }
 
-/// Against stencils of 16 rings, 64 samples a pixel: shading and lines of the paper's profile.
-Json soft_frontier(const NamedScene& named, int side, int rounds) {
+/// Stencils of 16 rings, 64 samples a pixel. That takes minutes, so a file may keep it.
+std::vector<float> converged(const Scene& scene, const Tracer& tracer, Settings settings,
+                             const std::string& file) {
+    set(settings, "method", "stencil");
+    set(settings, "quality", "16");
+    set(settings, "aa", "multisample:64");
+    settings.threads = 0;
+    std::vector<float> values(3 * static_cast<std::size_t>(settings.size.width) *
+                              static_cast<std::size_t>(settings.size.height));
+    const auto bytes = static_cast<std::streamsize>(values.size() * sizeof(float));
+    if (std::ifstream kept(file, std::ios::binary);
+        kept.read(reinterpret_cast<char*>(values.data()), bytes)) {
+        return values;
+    }
+    values = colors(render(scene, tracer, settings, kLinear));
+    if (!file.empty()) {
+        std::ofstream(file, std::ios::binary)
+            .write(reinterpret_cast<const char*>(values.data()), bytes);
+    }
+    return values;
+}
+
+/// Shading and lines of the paper's profile.
+Json soft_frontier(const NamedScene& named, const Options& options) {
     const Scene scene(named.objects);
     const auto tracer = make_tracer(scene);
-    Settings settings = frontier_settings(side);
+    Settings settings = frontier_settings(options.side);
     set(settings, "metric", "linear");
-    Settings converged = settings;
-    set(converged, "method", "stencil");
-    set(converged, "quality", "16");
-    set(converged, "aa", "multisample:64");
-    fmt::print("{}, {} x {}, linear profile\n", named.name, side, side);
-    const Measured reference = measure(scene, *tracer, converged, 0, kLinear);
-    return compare(scene, *tracer, settings, colors(reference.film), rounds, "linear");
+    fmt::print("{}, {} x {}, linear profile\n", named.name, options.side, options.side);
+    const std::vector<float> reference = converged(scene, *tracer, settings, options.reference);
+    return compare(scene, *tracer, settings, reference, options, "linear");
 }
 
 /// Against the exact area of each pixel under the outline of one sphere, seen in parallel
 /// projection: solid lines alone.
-Json solid_frontier(int side, int rounds) {
+Json solid_frontier(const Options& options) {
+    const int side = options.side;
     Spheres shape;
     shape.spheres.push_back({{0, 0, 0}, 1.0F});
     Object object;
@@ -173,24 +205,45 @@ Json solid_frontier(int side, int rounds) {
         all.insert(all.end(), reference.begin(), reference.end());
     }
     fmt::print("one sphere, {} x {}, solid lines\n", side, side);
-    return compare(scene, *tracer, settings, all, rounds, "solid");
+    return compare(scene, *tracer, settings, all, options, "solid");
 }
 
+/// Of the fastest frame, which other programs disturbed least.
 Json growth_row(const Scene& scene, const Tracer& tracer, std::string_view along, double at,
                 int side, double width, int rounds) {
     Settings settings;
     settings.size = {side, side};
     settings.threads = 1;
     settings.line_width.value = width;
-    const Measured measured = measure(scene, tracer, settings, rounds, {});
-    fmt::print("  {:<10}{:>12} {:>10.1f} ms\n", along, at, measured.ms);
+    set(settings, "ambient", "0");
+    const RenderStats stats = measure(scene, tracer, settings, rounds, {}).stats;
+    const double ms = stats.render_ms;
+    settings.compose = Compose::shaded;
+    set(settings, "aa", "none");
+    const double plain = measure(scene, tracer, settings, rounds, {}).stats.render_ms;
+    fmt::print(
+        "  {:<8}{:>9} {:>7.1f} ms, without lines {:>6.1f}; {:>5.2f} million crossings; "
+        "trace {:.0f} detect {:.0f} locate {:.0f} connect {:.0f} ink {:.0f} blend {:.0f}\n",
+        along, at, ms, plain, static_cast<double>(stats.crossings) * 1e-6, stats.trace_ms,
+        stats.detect_ms, stats.locate_ms, stats.connect_ms, stats.ink_ms, stats.blend_ms);
     std::fflush(stdout);
-    return {{"along", along}, {"at", at}, {"ms", measured.ms}};
+    return {{"along", along},
+            {"at", at},
+            {"ms", ms},
+            {"plain_ms", plain},
+            {"crossings", stats.crossings},
+            {"trace_ms", stats.trace_ms},
+            {"detect_ms", stats.detect_ms},
+            {"locate_ms", stats.locate_ms},
+            {"connect_ms", stats.connect_ms},
+            {"ink_ms", stats.ink_ms},
+            {"blend_ms", stats.blend_ms}};
 }
 
-Json growth(std::size_t most_spheres, int rounds) {
+/// Along the number of spheres, from `least` on; along pixels and width for 100,000 of them.
+Json growth(std::size_t least, std::size_t most, int rounds) {
     Json rows = Json::array();
-    for (std::size_t count = 1000; count <= most_spheres; count *= 10) {
+    for (std::size_t count = least; count <= most; count *= 10) {
         const NamedScene named = random_spheres(count);
         const Scene scene(named.objects);
         const auto tracer = make_tracer(scene);
@@ -207,33 +260,60 @@ Json growth(std::size_t most_spheres, int rounds) {
     return rows;
 }
 
+/// Rows that were measured now, and those of `before` that tell of something else.
+Json merged(const Json& before, Json now, std::initializer_list<const char*> keys) {
+    Json rows = Json::array();
+    for (const Json& row : before) {
+        const bool again = std::ranges::any_of(now, [&](const Json& other) {
+            return std::ranges::all_of(keys, [&](const char* k) { return other[k] == row[k]; });
+        });
+        if (!again) rows.push_back(row);
+    }
+    for (Json& row : now) rows.push_back(std::move(row));
+    return rows;
+}
+
+void write_json(const std::string& file, Json frontier, Json growth) {
+    Json before;
+    if (std::ifstream in(file); in) before = Json::parse(in, nullptr, false);
+    const auto old = [&](const char* name) {
+        return before.is_object() && before.contains(name) ? before[name] : Json::array();
+    };
+    Json json;
+    json["frontier"] = merged(old("frontier"), std::move(frontier), {"profile", "way"});
+    json["growth"] = merged(old("growth"), std::move(growth), {"along", "at"});
+    std::ofstream(file) << json.dump(1) << '\n';
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
     CLI::App app("Measures error against time, and time against size. plot_curves.py draws them.");
     std::string file;
     std::string json_file;
-    int side = 384;
-    int rounds = 5;
+    Options options;
+    std::size_t least_spheres = 1000;
     std::size_t most_spheres = 10'000'000;
     bool errors = true;
     app.add_option("FILE", file, "Scene for the paper's profile [acetaminophen]");
-    app.add_option("--json", json_file, "Write the results as JSON");
-    app.add_option("--side", side, "Pixels of the square picture's side, for errors [384]");
-    app.add_option("--rounds", rounds, "Rounds to take the median of [5]");
+    app.add_option("--json", json_file, "Add the results to this file");
+    app.add_option("--side", options.side, "Pixels of the square picture's side, for errors [384]");
+    app.add_option("--rounds", options.rounds, "Rounds to take the median of [5]");
+    app.add_option("--ways", options.ways, "For errors: only ways with this in their names");
+    app.add_option("--reference", options.reference, "File to keep the converged picture in");
+    app.add_option("--from-spheres", least_spheres, "Least spheres, for growth [1000]");
     app.add_option("--spheres", most_spheres, "Most spheres, for growth; 0: no growth [10000000]");
     app.add_flag("!--no-frontier", errors, "No errors");
     CLI11_PARSE(app, argc, argv);
     if (file.empty()) file = INKTRACE_SAMPLES "/acetaminophen.xyz";
     try {
-        Json json;
-        json["frontier"] = Json::array();
+        Json frontier = Json::array();
         if (errors) {
-            json["frontier"] = soft_frontier({file, read_file(file).objects}, side, rounds);
-            for (const Json& row : solid_frontier(side, rounds)) json["frontier"].push_back(row);
+            frontier = soft_frontier({file, read_file(file).objects}, options);
+            for (const Json& row : solid_frontier(options)) frontier.push_back(row);
         }
-        json["growth"] = growth(most_spheres, rounds);
-        if (!json_file.empty()) std::ofstream(json_file) << json.dump(1) << '\n';
+        Json rows = growth(least_spheres, most_spheres, options.rounds);
+        if (!json_file.empty()) write_json(json_file, std::move(frontier), std::move(rows));
     } catch (const std::exception& error) {
         fmt::print(stderr, "{}\n", error.what());
         return 1;

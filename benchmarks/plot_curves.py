@@ -48,7 +48,9 @@ class LogLog:
         (xa, ya), (xb, yb) = (self.place(*end) for end in ends)
         color = "#bbb" if strong else "#e6e6e6"
         self.parts.append(f'<path d="M{xa:.1f} {ya:.1f}L{xb:.1f} {yb:.1f}" stroke="{color}"/>')
-        label = f"{value:g}"
+        if not strong and self.range[axis][1] - self.range[axis][0] > 3.5:
+            return  # no room for its label
+        label = f"{value:g}" if value < 1e6 else f"{value / 1e6:g} M"
         if axis == 0:
             self._text(xa, HEIGHT - BOTTOM + 14, label, "middle", 10)
         else:
@@ -106,13 +108,19 @@ def growth(rows):
     diagrams = []
     titles = {"spheres": "number of spheres", "side": "side of the picture, pixels", "width": "width of lines, pixels"}
     for k, along in enumerate(titles):
-        points = [(row["at"], row["ms"]) for row in rows if row["along"] == along]
-        if len(points) < 2:
+        chosen = sorted((row for row in rows if row["along"] == along), key=lambda row: row["at"])
+        if len(chosen) < 2:
             continue
+        curves = {
+            "with lines": ([(row["at"], row["ms"]) for row in chosen], INK["edges"]),
+            "without": ([(row["at"], row["plain_ms"]) for row in chosen], "#888"),
+        }
+        points = [point for curve, _ in curves.values() for point in curve]
         diagram = LogLog("", titles[along], "time, ms", points, k * WIDTH)
-        diagram.line(points, INK["edges"])
-        for point in points:
-            diagram.dot(*point, INK["edges"])
+        for name, (curve, color) in curves.items():
+            diagram.line(curve, color)
+            for point in curve:
+                diagram.dot(*point, color, name if point == curve[1] else "")
         diagrams.append(diagram)
     return diagrams
 
