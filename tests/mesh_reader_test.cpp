@@ -288,6 +288,42 @@ TEST(ObjReader, WarnsOfAMissingMaterialLibraryAndKeepsTheDefaultColour) {
     EXPECT_NE(contents.warnings[0].find("paint.mtl"), std::string::npos);
 }
 
+TEST(ObjReader, GivesTheFacesOfEachMaterialItsColour) {
+    const TemporaryFolder folder;
+    folder.write("paint.mtl", "newmtl red\nKd 1 0 0\nnewmtl odd\nNs 10\nnewmtl blue\nKd 0 0 1\n");
+    const FileContents contents = read_file(
+        folder.write("a.obj",
+                     "mtllib paint.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 5 0 0\nv 6 0 0\nv 5 1 0\n"
+                     "g all\nusemtl red\nf 1 2 3\nusemtl blue\nf 4 5 6\n"));
+    EXPECT_EQ(contents.objects[0].part_names, (std::vector<std::string>{"all", "blue"}));
+    const Mesh& mesh = mesh_of(contents);
+    for (std::size_t k = 0; k < 3; ++k) {
+        EXPECT_EQ(mesh.colors[mesh.triangles[0][k]], (Rgb8{255, 0, 0}));
+        EXPECT_EQ(mesh.colors[mesh.triangles[1][k]], (Rgb8{0, 0, 255}));
+    }
+}
+
+TEST(ObjReader, TakesAGroupThatIsResumedForOne) {
+    const FileContents contents =
+        read_text_as("a.obj", square_with("g left\nf 1 2 3\ng right\nf 1 3 4\ng left\nf 1 2 4\n"));
+    EXPECT_EQ(contents.objects[0].part_names, (std::vector<std::string>{"left", "right"}));
+    EXPECT_EQ(mesh_of(contents).parts, (std::vector<std::uint32_t>{0, 1, 0}));
+}
+
+TEST(ObjReader, LeavesLinesAndPointsOutAndKeepsTheNormalsOfFaces) {
+    const FileContents contents =
+        read_text_as("a.obj", square_with("vn 1 0 0\nl 1 2 3\np 4\nf 1//1 2//1 3//1\n"));
+    EXPECT_EQ(mesh_of(contents).triangles.size(), 1U);
+    EXPECT_EQ(contents.warnings,
+              (std::vector<std::string>{"2 faces with fewer than 3 corners were left out."}));
+    EXPECT_NEAR(unpack_normal(mesh_of(contents).corner_normals[0][0]).x, 1.0F, 1e-4F);
+}
+
+TEST(ObjReader, DividesByTheWeightOfAVertex) {
+    const FileContents contents = read_text_as("a.obj", "v 0 0 0 1\nv 2 0 0 2\nv 0 1 0\nf 1 2 3\n");
+    EXPECT_EQ(contents.objects[0].world_bounds().upper, (Vec3d{1, 1, 0}));
+}
+
 TEST(ObjReader, OpensNothingOutsideItsFolder) {
     const TemporaryFolder folder;
     folder.write("outside.mtl", "newmtl red\nKd 1 0 0\n");

@@ -22,6 +22,7 @@
 #include "base/text.h"
 #include "io/child_process.h"
 #include "io/file_text.h"
+#include "io/obj_materials.h"
 
 namespace ink {
 
@@ -29,28 +30,20 @@ namespace {
 
 using Path = std::filesystem::path;
 
-/// Another file that the model names, as far as Assimp asked for one.
-struct Library {
-    std::string wanted;  ///< first name asked for; empty: none
-    bool found = false;
-};
-
-/// What Assimp may open: the model, from memory, and material libraries and buffers near it.
+/// What Assimp may open: the model, from memory, and buffers near it.
 class Files : public Assimp::IOSystem {
   public:
-    Files(std::string model, std::string_view text, Path folder, Library& library)
-        : model_(std::move(model)), text_(text), folder_(std::move(folder)), library_(library) {}
+    Files(std::string model, std::string_view text, Path folder)
+        : model_(std::move(model)), text_(text), folder_(std::move(folder)) {}
 
     bool Exists(const char* name) const override {
-        return name == model_ || library_path(name).has_value();
+        return name == model_ || buffer_path(name).has_value();
     }
     char getOsSeparator() const override { return '/'; }
     Assimp::IOStream* Open(const char* name, const char* /*mode*/) override {
         if (name == model_) return stream(text_);
-        if (library_.wanted.empty()) library_.wanted = Path(name).filename().string();
-        const std::optional<Path> path = library_path(name);
+        const std::optional<Path> path = buffer_path(name);
         if (!path) return nullptr;
-        library_.found = true;
         texts_.push_back(std::make_unique<std::string>(read_text(*path)));
         return stream(*texts_.back());
     }
@@ -63,12 +56,11 @@ class Files : public Assimp::IOSystem {
     }
 
     /// The names in a model are a stranger's: nothing outside its folder is opened.
-    std::optional<Path> library_path(const char* name) const {
+    std::optional<Path> buffer_path(const char* name) const {
         const Path path = Path(name).lexically_normal();
         const Path below = path.lexically_relative(folder_.lexically_normal());
-        const std::string extension = to_lower(path.extension().string());
         if (below.empty() || *below.begin() == ".." ||
-            (extension != ".mtl" && extension != ".bin")) {
+            to_lower(path.extension().string()) != ".bin") {
             return std::nullopt;
         }
         std::error_code error;
@@ -79,16 +71,7 @@ class Files : public Assimp::IOSystem {
     std::string_view text_;
     std::vector<std::unique_ptr<std::string>> texts_;  ///< of other files
     Path folder_;
-    Library& library_;
 };
-
-Rgb8 to_rgb8(float r, float g, float b) {
-    // Written so that NaN becomes 0.
-    const auto byte = [](float x) {
-        return static_cast<std::uint8_t>(x > 0.f ? std::lround(std::min(x, 1.f) * 255.f) : 0);
-    };
-    return {byte(r), byte(g), byte(b)};
-}
 
 Vec3f to_vec(const aiVector3D& v) { return {v.x, v.y, v.z}; }
 
@@ -112,15 +95,14 @@ std::optional<Rgb8> material_color(const aiScene& scene, const aiMesh& mesh) {
         material.Get(AI_MATKEY_COLOR_DIFFUSE, color) != AI_SUCCESS) {
         return std::nullopt;
     }
-    return to_rgb8(color.r, color.g, color.b);
+    return to_rgb8({color.r, color.g, color.b});
 }
 
 /// Gathers the meshes of a scene, each where its nodes place it.
 class SceneWalk {
   public:
-    SceneWalk(const aiScene& scene, bool names_of_nodes, std::size_t most_vertices)
+    SceneWalk(const aiScene& scene, std::size_t most_vertices)
         : scene_(scene),
-          names_of_nodes_(names_of_nodes),
           most_vertices_(most_vertices),
           normals_(all_meshes(scene, [](const aiMesh* m) { return m->HasNormals(); })),
           colors_(all_meshes(scene, [](const aiMesh* m) { return m->HasVertexColors(0); })) {
@@ -170,7 +152,7 @@ class SceneWalk {
     }
 
     std::string part_name(const aiMesh& mesh, const aiNode& node) const {
-        if (names_of_nodes_ && node.mName.length > 0) return node.mName.C_Str();
+        if (node.mName.length > 0) return node.mName.C_Str();
         if (mesh.mName.length > 0) return mesh.mName.C_Str();
         if (mesh.mMaterialIndex < scene_.mNumMaterials) {
             const aiString name = scene_.mMaterials[mesh.mMaterialIndex]->GetName();
@@ -195,7 +177,7 @@ class SceneWalk {
             if (several_) polygons_.colors.push_back(plain.value_or(Material{}.color));
             if (!colors_) continue;
             const aiColor4D& color = mesh.mColors[0][i];
-            polygons_.colors.push_back(to_rgb8(color.r, color.g, color.b));
+            polygons_.colors.push_back(to_rgb8({color.r, color.g, color.b}));
         }
         return true;
     }
@@ -217,7 +199,6 @@ class SceneWalk {
     static constexpr std::uint32_t kNoVertex = 0xFFFFFFFFU;
 
     const aiScene& scene_;
-    bool names_of_nodes_;
     std::size_t most_vertices_;
     bool normals_;  ///< of all meshes
     bool colors_;
@@ -340,29 +321,19 @@ std::optional<PolygonMesh> unpack(std::string_view bytes) {
 std::string read_packed(const Path& file, std::string_view text, std::string_view extension) {
     const Path folder = std::filesystem::absolute(file).parent_path();
     const std::string model = (folder / (model_name(file) + std::string(extension))).string();
-    Library library;
     Assimp::Importer importer;
-    importer.SetIOHandler(new Files(model, text, folder, library));  // the importer owns it
+    importer.SetIOHandler(new Files(model, text, folder));  // the importer owns it
     const aiScene* const scene = importer.ReadFile(model, 0);
     if (scene == nullptr) return {};
 
     // Copies by nodes may make a model larger than its file, but not without bound.
     constexpr std::size_t kCopies = 1000;
-    const bool is_obj = extension == ".obj";
     const std::size_t most = std::min<std::size_t>(kCopies * text.size(), std::size_t{1} << 31);
-    std::optional<PolygonMesh> polygons = SceneWalk(*scene, !is_obj, most).run();
+    std::optional<PolygonMesh> polygons = SceneWalk(*scene, most).run();
     if (!polygons) return {};
-    for (const aiMesh* const mesh : meshes_of(*scene)) polygons->faces_read += mesh->mNumFaces;
-    if (library.found || !is_obj) {
-        for (const aiMesh* const mesh : meshes_of(*scene)) {
-            if (!polygons->color) polygons->color = material_color(*scene, *mesh);
-        }
-    }
-    if (!library.wanted.empty() && !library.found && is_obj) {
-        polygons->warnings.push_back(
-            fmt::format("The material library '{}' is not beside the file; its colours are left "
-                        "out.",
-                        library.wanted));
+    for (const aiMesh* const mesh : meshes_of(*scene)) {
+        polygons->faces_read += mesh->mNumFaces;
+        if (!polygons->color) polygons->color = material_color(*scene, *mesh);
     }
     return pack(*polygons);
 }

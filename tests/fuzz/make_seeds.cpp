@@ -105,6 +105,26 @@ int main(int argc, char** argv) {
              "<VTKFile type=\"UnstructuredGrid\"><UnstructuredGrid><Piece NumberOfPoints=\"1\">"
              "<Points><DataArray type=\"Float32\" NumberOfComponents=\"3\" format=\"ascii\">1 2 3"
              "</DataArray></Points></Piece></UnstructuredGrid></VTKFile>"},
+        Seed{
+            "vtp",
+            "<VTKFile type=\"PolyData\"><PolyData><Piece NumberOfPoints=\"4\" NumberOfPolys=\"1\" "
+            "NumberOfStrips=\"1\"><PointData><DataArray type=\"Float32\" Name=\"t\" "
+            "format=\"ascii\">0 1 2 3</DataArray></PointData><Points><DataArray type=\"Float64\" "
+            "NumberOfComponents=\"3\" format=\"ascii\">0 0 0 1 0 0 1 1 0 0 1 0</DataArray></Points>"
+            "<Polys><DataArray type=\"Int64\" Name=\"connectivity\" format=\"ascii\">0 1 2 3"
+            "</DataArray><DataArray type=\"Int64\" Name=\"offsets\" format=\"ascii\">4</DataArray>"
+            "</Polys><Strips><DataArray type=\"Int64\" Name=\"connectivity\" format=\"ascii\">"
+            "0 1 3 2</DataArray><DataArray type=\"Int64\" Name=\"offsets\" format=\"ascii\">4"
+            "</DataArray></Strips></Piece></PolyData></VTKFile>"},
+        Seed{"vtu",
+             "<VTKFile type=\"UnstructuredGrid\"><UnstructuredGrid><Piece NumberOfPoints=\"4\" "
+             "NumberOfCells=\"3\"><Points><DataArray type=\"Float32\" NumberOfComponents=\"3\" "
+             "format=\"ascii\">0 0 0 1 0 0 0 1 0 1 1 0</DataArray></Points><Cells><DataArray "
+             "type=\"Int32\" Name=\"connectivity\" format=\"ascii\">0 1 2 0 1 2 3 0 1 3 2"
+             "</DataArray><DataArray type=\"Int32\" Name=\"offsets\" format=\"ascii\">3 7 11"
+             "</DataArray><DataArray type=\"UInt8\" Name=\"types\" format=\"ascii\">5 8 "
+             "9</DataArray>"
+             "</Cells></Piece></UnstructuredGrid></VTKFile>"},
         Seed{"obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvn 0 0 1\ng a\nf 1//1 2//1 3//1 -1//1\n"},
         Seed{"off", "COFF\n3 1 0\n0 0 0 1 0 0\n1 0 0 0 1 0\n0 1 0 0 0 1\n3 0 1 2\n"},
         Seed{"glb", glb()},
