@@ -31,7 +31,9 @@ float ball_nodes(float radius_px) { return 3.4F * std::sqrt(radius_px); }
 /// Along the sides of a triangle.
 constexpr std::size_t kTriangleGrids = 8;
 constexpr int triangle_side(std::size_t grid) { return 1 << grid; }
-constexpr float kTriangleSpacing = 4.0F;  ///< pixels between nodes, at most
+constexpr float kTriangleSpacing = 6.0F;  ///< pixels between nodes, at most
+/// Smaller triangles have nodes at their corners alone, which they share.
+constexpr float kSmallTriangle = 14.0F;
 
 /// The first grid of at least so many nodes.
 template <class Side>
@@ -120,7 +122,7 @@ std::uint64_t next_number() {
 
 struct AmbientBake::Impl {
     Impl(const Scene& all, const Tracer& scene_tracer, int quality)
-        : scene(all), directions(6 << (quality - 1)), rays(scene_tracer, 8 << quality) {
+        : scene(all), directions(6 << (quality - 1)), rays(scene_tracer, 16 << quality) {
         std::size_t ball_count = 0;
         std::size_t triangles = 0;
         std::size_t corners = 0;
@@ -254,7 +256,8 @@ float AmbientBake::Impl::on_triangle(const HitPacket& hits, int lane, const Corn
     const std::uint32_t triangle = hits.primitive[lane];
     const float u = hits.u[lane];
     const float v = hits.v[lane];
-    const float nodes_needed = corners.longest() / (footprint * kTriangleSpacing);
+    const float longest = corners.longest() / footprint;
+    const float nodes_needed = longest > kSmallTriangle ? longest / kTriangleSpacing : 1.0F;
     const std::size_t level = grid_for(nodes_needed, kTriangleGrids, triangle_side);
     const int side = triangle_side(level);
     const float pixels = corners.area() / (footprint * footprint);
