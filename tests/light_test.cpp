@@ -281,6 +281,42 @@ TEST(Lines, GetThinnerWithDistance) {
     EXPECT_NEAR(ink(thin, 64, 128) / ink(usual, 64, 128), 1.0 - 0.6 * 0.9, 0.01);
 }
 
+/// Two upright sheets of squares, one at the front and one at the back of the scene.
+Scene near_and_far_sheets() {
+    std::vector<Vec3f> vertices;
+    std::vector<Mesh::Triangle> triangles;
+    for (const auto& [left, z] :
+         std::vector<std::pair<float, float>>{{-4.0F, 0.0F}, {1.0F, -10.0F}}) {
+        const auto first = static_cast<std::uint32_t>(vertices.size());
+        for (int j = 0; j <= 3; ++j) {
+            for (int i = 0; i <= 3; ++i) {
+                vertices.push_back({left + static_cast<float>(i), static_cast<float>(j) - 1.5F, z});
+            }
+        }
+        for (std::uint32_t j = 0; j < 3; ++j) {
+            for (std::uint32_t i = 0; i < 3; ++i) {
+                const std::uint32_t a = first + 4 * j + i;
+                triangles.push_back({a, a + 1, a + 5});
+                triangles.push_back({a, a + 5, a + 4});
+            }
+        }
+    }
+    return Scene({mesh_object(std::move(vertices), std::move(triangles))});
+}
+
+TEST(Lines, BetweenFacesFadeAndGetThinnerLikeOthers) {
+    const Scene scene = near_and_far_sheets();
+    Settings settings = with(with(plan_view(10, 160), "lines", "mesh"), "line-width", "2px");
+    settings.aovs = {Aov::lines};
+    const PixelFormats formats{.display = true, .linear = true};
+    const Film usual = draw(scene, settings, formats);
+    for (const char* name : {"line-fade", "line-taper"}) {
+        const Film film = draw(scene, with(settings, name, "0.5"), formats);
+        EXPECT_NEAR(ink(film, 0, 80) / ink(usual, 0, 80), 1.0, 0.01) << name;
+        EXPECT_NEAR(ink(film, 80, 160) / ink(usual, 80, 160), 0.5, 0.02) << name;
+    }
+}
+
 TEST(Halos, ShowPaperBesideOutlinesInWhatLiesFarBehind) {
     std::vector<Object> objects{
         sphere_object({{{0, 0, 0}, 1}}),

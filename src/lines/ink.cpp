@@ -132,8 +132,8 @@ InkTile::Layer& InkTile::layer_of(std::size_t style) {
 }
 
 void InkTile::draw_faces(int x, int y, const Lanes<float>& distance, const Lanes<float>& nx,
-                         const Lanes<float>& ny, const Lanes<float>& t, std::size_t style,
-                         float width) {
+                         const Lanes<float>& ny, const Lanes<float>& t,
+                         const Lanes<float>& strength, std::size_t style, float width) {
     Layer& layer = layer_of(style);
     Lanes<float> inks;
     if (profile_.empty()) {
@@ -149,7 +149,7 @@ void InkTile::draw_faces(int x, int y, const Lanes<float>& distance, const Lanes
     for (int i = 0; i < kLanes; ++i) {
         if (inks[i] <= 0.0F) continue;
         any = true;
-        layer.coverage[k][i] = std::max(layer.coverage[k][i], inks[i]);
+        layer.coverage[k][i] = std::max(layer.coverage[k][i], inks[i] * strength[i]);
         if (!layer.t.empty()) layer.t[k][i] = std::min(layer.t[k][i], t[i] + kMeshBehind);
     }
     if (any && touched_[k] == 0) touched_[k] = kTouched;

@@ -61,9 +61,10 @@ class InkTile {
     }
     /// Inks the block with pixel (x, y) of the tile with lines between faces: what each pixel gets
     /// from the middle of a line at `distance` from its centre, pixels, infinite for none; (nx, ny)
-    /// is the unit normal of the line.
+    /// is the unit normal of the line, `strength` the share of ink that it has.
     void draw_faces(int x, int y, const Lanes<float>& distance, const Lanes<float>& nx,
-                    const Lanes<float>& ny, const Lanes<float>& t, std::size_t style, float width);
+                    const Lanes<float>& ny, const Lanes<float>& t, const Lanes<float>& strength,
+                    std::size_t style, float width);
     /// Lays the inks over each other, the nearer line on top at each pixel.
     void finish();
 

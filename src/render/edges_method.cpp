@@ -163,11 +163,21 @@ bool Edges::is_inner(const Segment& segment) const {
            pipeline.ids.of_one_whole(segment.left, segment.right);
 }
 
-float Edges::depth_of(const Segment& segment) const {
-    const Vec2f middle = (segment.a + segment.b) * 0.5F;
-    const Vec3d from = viewpoint.origin(middle);
+float Edges::depth_at(Vec2f point, float t) const {
+    const Vec3d from = viewpoint.origin(point);
     return pipeline.shader.depth_cue()(
-        to_float(from + normalize(viewpoint.direction(middle)) * static_cast<double>(segment.t)));
+        to_float(from + normalize(viewpoint.direction(point)) * static_cast<double>(t)));
+}
+
+bool Edges::cues_depth() const {
+    return pipeline.settings.line_fade > 0.0 || pipeline.settings.line_taper > 0.0;
+}
+
+void Edges::apply_distance(Segment& segment) const {
+    if (!cues_depth()) return;
+    const float depth = depth_at((segment.a + segment.b) * 0.5F, segment.t);
+    segment.strength *= 1.0F - static_cast<float>(pipeline.settings.line_fade) * depth;
+    segment.width_scale = 1.0F - static_cast<float>(pipeline.settings.line_taper) * depth;
 }
 
 std::size_t Edges::search_tile_at(Vec2f point) const {

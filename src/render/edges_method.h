@@ -50,8 +50,12 @@ struct Edges {
 
     /// Whether both sides of a line belong to one whole, where that makes a difference.
     bool is_inner(const Segment& segment) const;
-    /// How far back in the scene a segment lies, in [0, 1].
-    float depth_of(const Segment& segment) const;
+    /// How far back in the scene lies what a point of the screen sees at distance t, in [0, 1].
+    float depth_at(Vec2f point, float t) const;
+    /// Whether lines get fainter or thinner the farther back they lie.
+    bool cues_depth() const;
+    /// Makes a line so.
+    void apply_distance(Segment& segment) const;
 
     const Pipeline& pipeline;
     int q;  ///< lattice points along a pixel's side

@@ -59,8 +59,27 @@ void LineDrawer::leave_gap(const InkStroke& stroke) {
     ink_.draw(paper, reach / edges_.ink.styles[edges_.halo_style].width_px);
 }
 
-/// Calls `draw(x, y, nearest edges, style, width)` for each block of the tile that has lines
-/// between faces, once a style.
+/// What distance leaves of the ink of lines between faces in a block; returns what it leaves of
+/// their width, which is that of the nearest of them.
+float LineDrawer::cue_depth(int x, int y, const NearestEdges& nearest,
+                            Lanes<float>& strength) const {
+    strength.fill(1.0F);
+    if (!edges_.cues_depth()) return 1.0F;
+    const Settings& settings = edges_.pipeline.settings;
+    float least = 1.0F;
+    for (int i = 0; i < kLanes; ++i) {
+        if (nearest.distance[i] == kInfinity) continue;
+        const Vec2f centre{static_cast<float>(x + i % kBlockSide) + 0.5F,
+                           static_cast<float>(y + i / kBlockSide) + 0.5F};
+        const float depth = edges_.depth_at(centre, nearest.t[i]);
+        strength[i] = 1.0F - static_cast<float>(settings.line_fade) * depth;
+        least = std::min(least, depth);
+    }
+    return 1.0F - static_cast<float>(settings.line_taper) * least;
+}
+
+/// Calls `draw(x, y, nearest edges, strength, style, width)` for each block of the tile that has
+/// lines between faces, once a style.
 template <class Draw>
 void LineDrawer::for_each_face_block(const Tile& tile, Draw draw) {
     face_edges_->begin();
@@ -68,12 +87,14 @@ void LineDrawer::for_each_face_block(const Tile& tile, Draw draw) {
     for (int y = tile.y0; y < tile.y1; y += kBlockSide) {
         for (int x = tile.x0; x < tile.x1; x += kBlockSide) {
             if (!face_edges_->measure(x, y, edges_.ink.reach(), nearest)) continue;
-            const float scale = thinning_.scale_at({static_cast<float>(x) + 0.5F * kBlockSide,
+            Lanes<float> strength;
+            const float scale = cue_depth(x, y, nearest, strength) *
+                                thinning_.scale_at({static_cast<float>(x) + 0.5F * kBlockSide,
                                                     static_cast<float>(y) + 0.5F * kBlockSide},
                                                    0);
             const auto draw_style = [&](std::uint32_t object, const NearestEdges& edges) {
                 const std::size_t style = edges_.style_of(LineType::mesh, object);
-                draw(x, y, edges, style, edges_.ink.styles[style].width_px * scale);
+                draw(x, y, edges, strength, style, edges_.ink.styles[style].width_px * scale);
             };
             if (!edges_.styles_by_object) {
                 draw_style(0, nearest);
@@ -98,11 +119,11 @@ void LineDrawer::for_each_face_block(const Tile& tile, Draw draw) {
 }
 
 void LineDrawer::ink_faces(const Tile& tile) {
-    for_each_face_block(
-        tile, [&](int x, int y, const NearestEdges& edges, std::size_t style, float width) {
-            ink_.draw_faces(x - tile.x0, y - tile.y0, edges.distance, edges.nx, edges.ny, edges.t,
-                            style, width);
-        });
+    for_each_face_block(tile, [&](int x, int y, const NearestEdges& edges,
+                                  const Lanes<float>& strength, std::size_t style, float width) {
+        ink_.draw_faces(x - tile.x0, y - tile.y0, edges.distance, edges.nx, edges.ny, edges.t,
+                        strength, style, width);
+    });
 }
 
 void LineDrawer::write_planes(const Tile& tile, const std::vector<TileLines>& found) {
@@ -122,21 +143,21 @@ void LineDrawer::write_planes(const Tile& tile, const std::vector<TileLines>& fo
 }
 
 void LineDrawer::add_face_planes(const Tile& tile) {
-    for_each_face_block(
-        tile, [&](int x, int y, const NearestEdges& edges, std::size_t, float width) {
-            for (int i = 0; i < kLanes; ++i) {
-                const int column = x + i % kBlockSide - tile.x0;
-                const int row = y + i / kBlockSide - tile.y0;
-                if (edges.distance[i] == kInfinity || x + i % kBlockSide >= tile.x1 ||
-                    y + i / kBlockSide >= tile.y1) {
-                    continue;
-                }
-                const FaceMap::Triangle seen = faces_->triangle(edges.triangle[i]);
-                const GeometryId id = edges_.pipeline.ids.resolve(seen.object, seen.primitive);
-                planes_.add(column, row, edges.distance[i], width,
-                            {edges.t[i], LineType::mesh, id, id});
+    for_each_face_block(tile, [&](int x, int y, const NearestEdges& edges, const Lanes<float>&,
+                                  std::size_t, float width) {
+        for (int i = 0; i < kLanes; ++i) {
+            const int column = x + i % kBlockSide - tile.x0;
+            const int row = y + i / kBlockSide - tile.y0;
+            if (edges.distance[i] == kInfinity || x + i % kBlockSide >= tile.x1 ||
+                y + i / kBlockSide >= tile.y1) {
+                continue;
             }
-        });
+            const FaceMap::Triangle seen = faces_->triangle(edges.triangle[i]);
+            const GeometryId id = edges_.pipeline.ids.resolve(seen.object, seen.primitive);
+            planes_.add(column, row, edges.distance[i], width,
+                        {edges.t[i], LineType::mesh, id, id});
+        }
+    });
 }
 
 /// Tiles whose lines may reach a tile. They were searched on the same raster, moved by the margin;

@@ -38,6 +38,7 @@ class LineDrawer {
 
     void leave_gap(const InkStroke& stroke);
     float width_scale(const InkStroke& stroke) const;
+    float cue_depth(int x, int y, const NearestEdges& nearest, Lanes<float>& strength) const;
     template <class Draw>
     void for_each_face_block(const Tile& tile, Draw draw);
     void ink_faces(const Tile& tile);

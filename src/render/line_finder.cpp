@@ -300,7 +300,7 @@ void LineFinder::find_tones() {
 /// Keeps the segments at hand, and smooths the shading along them.
 void LineFinder::keep() {
     for (Segment& segment : segments_) {
-        apply_distance(segment);
+        edges_.apply_distance(segment);
         segment.gap = gap_behind(segment);
     }
     if (keeps_segments_) {
@@ -334,15 +334,6 @@ void LineFinder::smooth() {
     }
 }
 
-/// Lines get fainter and thinner the farther back they lie, if they are to.
-void LineFinder::apply_distance(Segment& segment) const {
-    const Settings& settings = edges_.pipeline.settings;
-    if (settings.line_fade == 0.0 && settings.line_taper == 0.0) return;
-    const float depth = edges_.depth_of(segment);
-    segment.strength *= 1.0F - static_cast<float>(settings.line_fade) * depth;
-    segment.width_scale = 1.0F - static_cast<float>(settings.line_taper) * depth;
-}
-
 /// Zero where there are no halos, where the background is what lies behind, or nothing does.
 float LineFinder::gap_behind(const Segment& segment) const {
     if (edges_.halo_px <= 0.0F || !front_ || segment.level > 0) return 0.0F;
@@ -372,7 +363,7 @@ void LineFinder::add_ridges(const Tile& tile) {
     const Timer phase(stats_.ridges_ms);
     segments_.clear();
     ridges_->search(tile, segments_);
-    for (Segment& segment : segments_) apply_distance(segment);
+    for (Segment& segment : segments_) edges_.apply_distance(segment);
     if (keeps_segments_) {
         found_.segments.insert(found_.segments.end(), segments_.begin(), segments_.end());
     }

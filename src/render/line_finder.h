@@ -114,7 +114,6 @@ class LineFinder {
     void find_tones();
     void keep();
     void keep_stroke(const Segment& segment);
-    void apply_distance(Segment& segment) const;
     float gap_behind(const Segment& segment) const;
     void smooth();
     void count(const InkStroke& stroke);

@@ -86,6 +86,7 @@ RenderStats mend_lines(const Edges& edges, std::vector<TileLines>& found,
     for (const Segment& bridge : repairs.bridges) {
         const std::size_t tile = edges.search_tile_at((bridge.a + bridge.b) * 0.5F);
         found[tile].segments.push_back(bridge);
+        edges.apply_distance(found[tile].segments.back());
         changed[tile] = true;
     }
     for (std::size_t tile = 0; tile < found.size(); ++tile) {
