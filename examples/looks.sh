@@ -13,7 +13,8 @@ draw() { # NAME FILE FLAGS...: in every look
     file=$2
     shift 2
     for look in plain soft toon goodsell technical ink blueprint; do
-        "$program" render "$file" --look $look --size 720x720 --quiet -o "$out/$name-$look.png" "$@"
+        "$program" render "$file" --look $look --size 840x630 --legend none --quiet \
+            -o "$out/$name-$look.png" "$@"
     done
 }
 
@@ -22,8 +23,10 @@ draw 2-protein "$data/molecules/4hhb.pdb" --color-by chain --select 'not water'
 draw 3-ribosome "$data/molecules/1ffk_ribosome50S.cif.gz" --color-by chain --line-width 1.5px
 draw 4-fandisk "$data/meshes/fandisk.obj" --material color=#c9b48a
 draw 5-engine "$data/meshes/2CylinderEngine.glb"
-draw 6-bar "$data/particles/mpm_karamelo_taylorbar3d_step1200.lammpstrj.gz" --color-by seq --line-width 1.5px
-draw 7-grains "$data/particles/dem_pile10192.vtu" --color-by radius --line-width 1.5px
+draw 6-bar "$data/particles/mpm_karamelo_taylorbar3d_step1200.lammpstrj.gz" --color-by seq \
+    --colormap coolwarm --view iso --line-width 1.5px
+draw 7-grains "$data/particles/dem_pile10192.vtu" --color-by radius --colormap coolwarm \
+    --eye 5.38,3.0,1.25 --look-at 5.38,5.38,0.06 --up 0,0,1 --line-width 1.5px
 
-montage "$out"/[1-7]-*.png -resize 260x260 -tile 7x7 -geometry 232x232+3+3 "$out/looks.png"
-convert "$out/looks.png" -resize 1190x1190 +dither -colors 200 "PNG8:$out/looks.png"
+montage "$out"/[1-7]-*.png -resize 360x270 -tile 7x7 -geometry 180x135+2+2 "$out/looks.png"
+convert "$out/looks.png" +dither -colors 220 "PNG8:$out/looks.png"

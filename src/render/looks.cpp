@@ -14,9 +14,9 @@ namespace ink {
 namespace {
 
 /// All that looks may set.
-constexpr std::array<std::string_view, 12> kGoverned{
-    "background", "compose", "line-color", "line-width", "line-fade", "line-taper",
-    "halo",       "shade",   "ambient",    "shadows",    "pastel",    "fog"};
+constexpr std::array<std::string_view, 13> kGoverned{
+    "background", "compose", "line-color", "line-width", "line-density", "line-fade", "line-taper",
+    "halo",       "shade",   "ambient",    "shadows",    "pastel",       "fog"};
 
 }  // namespace
 
@@ -34,16 +34,24 @@ const std::vector<Look>& looks() {
           {"ambient", "0.45"},
           {"pastel", "0.35"},
           {"fog", "0.45"},
+          {"line-density", "0.4"},
           {"line-fade", "0.35"}},
          "inner:width=1.2px;crease:width=1.5px",
          true},
         {"technical",
          "from cool to warm; bold outlines, thin creases",
-         {{"shade", "gooch"}, {"ambient", "0.35"}, {"line-width", "1.5px"}},
-         "silhouette:width=3.5px;boundary:width=3.5px;crease:width=1.2px"},
+         {{"shade", "gooch"},
+          {"ambient", "0.35"},
+          {"line-width", "1.5px"},
+          {"line-density", "0.4"}},
+         "silhouette:width=3.5px;boundary:width=3.5px;crease:width=1.2px;inner:width=1.2px"},
         {"ink",
          "black lines on white, thinner with distance",
-         {{"compose", "lines"}, {"ambient", "0"}, {"line-taper", "0.6"}, {"halo", "3px"}}},
+         {{"compose", "lines"},
+          {"ambient", "0"},
+          {"line-density", "0.6"},
+          {"line-taper", "0.6"},
+          {"halo", "3px"}}},
         {"blueprint",
          "white lines on blue",
          {{"background", "#17407a"},
@@ -51,8 +59,9 @@ const std::vector<Look>& looks() {
           {"line-width", "1.5px"},
           {"shade", "none"},
           {"ambient", "0"},
+          {"line-density", "0.5"},
           {"line-fade", "0.5"}},
-         "silhouette:width=2.5px;boundary:width=2.5px;crease:width=1.2px"}};
+         "silhouette:width=2.5px;boundary:width=2.5px;crease:width=1.2px;inner:width=1.2px"}};
     return kLooks;
 }
 
