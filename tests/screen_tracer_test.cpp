@@ -83,9 +83,9 @@ class Seen {
         std::vector<std::uint32_t> cells(points.size());
         std::iota(cells.begin(), cells.end(), 0U);
         std::vector<HitPacket> hits(points.size());
-        tracer->intersect(
-            {0, 0, kBlockSide, size_.width / kBlockSide, size_.height / kBlockSide, cells}, points,
-            rays(points), hits);
+        tracer->find({0, 0, kBlockSide, size_.width / kBlockSide, size_.height / kBlockSide, cells},
+                     points);
+        tracer->resolve(0, points, rays(points), hits);
         return hits;
     }
     std::vector<HitPacket> trace_brute_force(const std::vector<PointPacket>& points) const {

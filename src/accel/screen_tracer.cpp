@@ -183,8 +183,12 @@ class ScreenTileTracer final : public TileTracer {
     }
     void intersect(std::span<const PointPacket> points, std::span<const RayPacket> rays,
                    std::span<HitPacket> hits) override;
-    void intersect(const BlockRaster& raster, std::span<const PointPacket> points,
-                   std::span<const RayPacket> rays, std::span<HitPacket> hits) override;
+    void find(const BlockRaster& raster, std::span<const PointPacket> points) override {
+        start(points);
+        find_fronts(lay_out(raster));
+    }
+    void resolve(std::size_t first, std::span<const PointPacket> points,
+                 std::span<const RayPacket> rays, std::span<HitPacket> hits) override;
     void identify(std::span<const PointPacket> points, std::span<const RayPacket> rays,
                   std::span<HitPacket> hits) override;
     bool needs_rays() const override { return false; }
@@ -226,7 +230,7 @@ void ScreenTileTracer::intersect(std::span<const PointPacket> points,
     for (std::size_t k = 0; k < points.size(); ++k) {
         front.start(view_.projection, points[k]);
         find_front(front);
-        resolve(front, rays[k], packets_.data(), hits[k]);
+        ink::resolve(front, rays[k], packets_.data(), hits[k]);
     }
 }
 
@@ -240,12 +244,10 @@ void ScreenTileTracer::identify(std::span<const PointPacket> points,
     }
 }
 
-void ScreenTileTracer::intersect(const BlockRaster& raster, std::span<const PointPacket> points,
-                                 std::span<const RayPacket> rays, std::span<HitPacket> hits) {
-    start(points);
-    find_fronts(lay_out(raster));
-    for (std::size_t k = 0; k < points.size(); ++k) {
-        resolve(fronts_[k], rays[k], packets_.data(), hits[k]);
+void ScreenTileTracer::resolve(std::size_t first, std::span<const PointPacket> /*points*/,
+                               std::span<const RayPacket> rays, std::span<HitPacket> hits) {
+    for (std::size_t k = 0; k < hits.size(); ++k) {
+        ink::resolve(fronts_[first + k], rays[k], packets_.data(), hits[k]);
     }
 }
 

@@ -57,11 +57,15 @@ class MergedTileTracer final : public TileTracer {
         second_->intersect(points, rays, others_);
         for (std::size_t k = 0; k < hits.size(); ++k) take_nearer(others_[k], hits[k]);
     }
-    void intersect(const BlockRaster& raster, std::span<const PointPacket> points,
-                   std::span<const RayPacket> rays, std::span<HitPacket> hits) override {
+    void find(const BlockRaster& raster, std::span<const PointPacket> points) override {
+        first_->find(raster, points);
+        second_->find(raster, points);
+    }
+    void resolve(std::size_t first, std::span<const PointPacket> points,
+                 std::span<const RayPacket> rays, std::span<HitPacket> hits) override {
         others_.resize(hits.size());
-        first_->intersect(raster, points, rays, hits);
-        second_->intersect(raster, points, rays, others_);
+        first_->resolve(first, points, rays, hits);
+        second_->resolve(first, points, rays, others_);
         for (std::size_t k = 0; k < hits.size(); ++k) take_nearer(others_[k], hits[k]);
     }
     bool reaches(const ScreenBox& box) const override {

@@ -86,9 +86,12 @@ class TileTracer {
     virtual void intersect(std::span<const PointPacket> points, std::span<const RayPacket> rays,
                            std::span<HitPacket> hits) = 0;
 
-    /// The same for packets that lie on a raster.
-    virtual void intersect(const BlockRaster& /*raster*/, std::span<const PointPacket> points,
-                           std::span<const RayPacket> rays, std::span<HitPacket> hits) {
+    /// The same in two steps for packets that lie on a raster: `find` looks for all hits, `resolve`
+    /// tells those of packets `first` and on, of which it is given the points and rays. So hits can
+    /// be made use of a few at a time, while they are in the cache.
+    virtual void find(const BlockRaster& /*raster*/, std::span<const PointPacket> /*points*/) {}
+    virtual void resolve(std::size_t /*first*/, std::span<const PointPacket> points,
+                         std::span<const RayPacket> rays, std::span<HitPacket> hits) {
         intersect(points, rays, hits);
     }
 

@@ -26,7 +26,6 @@ TileLines LineFinder::search(const Tile& tile) {
     smoothing_.begin(tile);
     trace_lattice(tile);
     if (faces_ != nullptr) map_faces(tile);
-    if (front_) shade();
     find_lines();
     if (specular_) add_specular();
     if (ridges_) add_ridges(tile);
@@ -35,8 +34,10 @@ TileLines LineFinder::search(const Tile& tile) {
     return std::move(found_);
 }
 
+/// A few blocks at a time, so that the hits of a block are still in the nearest cache when it is
+/// shaded and its samples go to the grid.
 void LineFinder::trace_lattice(const Tile& tile) {
-    const Timer timer(stats_.trace_ms);
+    LapTimer timer;
     const int q = edges_.q;
     // Cells hang on their upper left point, so the tile needs one more column and row of points.
     grid_.x0 = tile.x0 * q;
@@ -50,6 +51,28 @@ void LineFinder::trace_lattice(const Tile& tile) {
     sampler_.enter({static_cast<float>(tile.x0), static_cast<float>(tile.y0),
                     static_cast<float>(tile.x1) + beyond, static_cast<float>(tile.y1) + beyond});
 
+    lay_blocks();
+    hits_.resize(std::max(hits_.size(), blocks_.size()));
+    normals_.resize(hits_.size());
+    colors_.resize(hits_.size());
+    seen_.assign(blocks_.size(), 0);
+    sampler_.find_blocks(blocks_, {});
+    saw_anything_ = false;
+    constexpr std::size_t kRun = 16;
+    for (std::size_t first = 0; first < blocks_.size(); first += kRun) {
+        const std::size_t count = std::min(kRun, blocks_.size() - first);
+        take(first, count);
+        timer.lap(stats_.trace_ms);
+        if (front_) shade(first, count);
+        timer.lap(stats_.shade_ms);
+    }
+    if (!specular_) return;
+    specular_->follow(grid_, {blocks_, sampler_.packets(), sampler_.points(), hits_, normals_},
+                      colors_);
+    timer.lap(stats_.shade_ms);
+}
+
+void LineFinder::lay_blocks() {
     blocks_across_ = (grid_.width + kBlockSide - 1) / kBlockSide;
     const int blocks_down = (grid_.height + kBlockSide - 1) / kBlockSide;
     block_at_.clear();
@@ -64,13 +87,13 @@ void LineFinder::trace_lattice(const Tile& tile) {
             if (near) blocks_.push_back(block);
         }
     }
-    hits_.resize(blocks_.size());
-    normals_.resize(blocks_.size());
-    sampler_.trace_blocks(blocks_, {}, hits_);
-    saw_anything_ = false;
-    constexpr std::size_t kAhead = 4;
-    for (std::size_t k = 0; k < blocks_.size(); ++k) {
-        if (k + kAhead < blocks_.size()) edges_.pipeline.shader.prefetch(hits_[k + kAhead]);
+}
+
+/// Their hits, normals and samples.
+void LineFinder::take(std::size_t first, std::size_t count) {
+    sampler_.take_hits(first, std::span(hits_).subspan(first, count));
+    for (std::size_t k = first; k < first + count; ++k) edges_.pipeline.shader.prefetch(hits_[k]);
+    for (std::size_t k = first; k < first + count; ++k) {
         if (std::ranges::all_of(hits_[k].object, [](auto object) { return object == kNoObject; })) {
             continue;  // the grid is background so far
         }
@@ -137,19 +160,12 @@ void LineFinder::copy_to_grid(std::size_t block, const T* from, T* plane) const 
     }
 }
 
-void LineFinder::shade() {
-    const Timer timer(stats_.shade_ms);
+void LineFinder::shade(std::size_t first, std::size_t count) {
     const Pipeline& pipeline = edges_.pipeline;
-    colors_.resize(blocks_.size());
-    seen_.resize(blocks_.size());
-    for (std::size_t k = 0; k < blocks_.size(); ++k) {
+    for (std::size_t k = first; k < first + count; ++k) {
         const SurfacePacket surface{sampler_.packets()[k], sampler_.points()[k], hits_[k],
                                     normals_[k]};
         seen_[k] = pipeline.shader.shade(surface, colors_[k]) ? 1 : 0;
-    }
-    if (specular_) {
-        specular_->follow(grid_, {blocks_, sampler_.packets(), sampler_.points(), hits_, normals_},
-                          colors_);
     }
 }
 

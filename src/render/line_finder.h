@@ -101,10 +101,12 @@ class LineFinder {
     }
 
     void trace_lattice(const Tile& tile);
+    void lay_blocks();
+    void take(std::size_t first, std::size_t count);
     void fill_grid(std::size_t block);
     template <class T>
     void copy_to_grid(std::size_t block, const T* from, T* plane) const;
-    void shade();
+    void shade(std::size_t first, std::size_t count);
     void put_pixels(const Tile& tile);
     void put_block(int x, int y);
     void keep_fringe(const Tile& tile);

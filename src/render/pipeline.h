@@ -123,6 +123,20 @@ class Timer {
     Clock::time_point start_;
 };
 
+/// Divides a stretch of time among counters.
+class LapTimer {
+  public:
+    /// Adds the time since the last lap, or the beginning.
+    void lap(double& total_ms) {
+        const Timer::Clock::time_point now = Timer::Clock::now();
+        total_ms += std::chrono::duration<double, std::milli>(now - last_).count();
+        last_ = now;
+    }
+
+  private:
+    Timer::Clock::time_point last_ = Timer::Clock::now();
+};
+
 /// Method "stencil": Choudhury and Parker 2009, section 3. Renders the whole film.
 RenderStats render_stencils(const Pipeline& pipeline, const RenderControl& control);
 

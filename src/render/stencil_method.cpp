@@ -105,35 +105,45 @@ void trace_samples(const Stencils& stencils, Workspace& work, Vec2f offset) {
     }
 }
 
-/// Shades block k of the tile, of which those before it have been shaded. False: only background.
-bool shade_block(const Stencils& stencils, const Workspace& work, std::size_t k,
-                 ColorPacket& colors) {
-    constexpr std::size_t kAhead = 4;
-    const Shader& shader = stencils.pipeline.shader;
-    if (k + kAhead < work.blocks.size()) shader.prefetch(work.hits[k + kAhead]);
-    return shader.shade(work.sampler.packets()[k], work.sampler.points()[k], work.hits[k], colors);
-}
-
 void shade_samples(const Stencils& stencils, Workspace& work) {
     const Timer timer(work.stats.shade_ms);
     work.colors.resize(work.blocks.size());
     work.seen.resize(work.blocks.size());
+    constexpr std::size_t kAhead = 4;
+    const Shader& shader = stencils.pipeline.shader;
     for (std::size_t k = 0; k < work.blocks.size(); ++k) {
-        work.seen[k] = shade_block(stencils, work, k, work.colors[k]) ? 1 : 0;
+        if (k + kAhead < work.blocks.size()) shader.prefetch(work.hits[k + kAhead]);
+        work.seen[k] = shader.shade(work.sampler.packets()[k], work.sampler.points()[k],
+                                    work.hits[k], work.colors[k])
+                           ? 1
+                           : 0;
     }
 }
 
-/// Where a pixel is its one sample, straight from the ray to the film.
-void shade_pixels(const Stencils& stencils, Workspace& work) {
-    const Timer timer(work.stats.shade_ms);
+/// Where a pixel is its one sample, straight from the ray to the film, a few blocks at a time: they
+/// do not leave the nearest cache.
+void trace_pixels(const Stencils& stencils, Workspace& work) {
+    constexpr std::size_t kRun = 16;
+    const Shader& shader = stencils.pipeline.shader;
+    LapTimer timer;
+    work.hits.resize(kRun);
+    work.sampler.find_blocks(work.blocks, stencils.samples[0]);
     ColorPacket colors;
-    for (std::size_t k = 0; k < work.blocks.size(); ++k) {
-        const Block block = work.blocks[k];
-        if (shade_block(stencils, work, k, colors)) {
-            stencils.pipeline.film.put(block.x, block.y, colors);
-        } else {
-            stencils.pipeline.film.put_background(block.x, block.y);
+    for (std::size_t first = 0; first < work.blocks.size(); first += kRun) {
+        const std::size_t count = std::min(kRun, work.blocks.size() - first);
+        work.sampler.take_hits(first, std::span(work.hits).first(count));
+        timer.lap(work.stats.trace_ms);
+        for (std::size_t k = 0; k < count; ++k) shader.prefetch(work.hits[k]);
+        for (std::size_t k = 0; k < count; ++k) {
+            const Block block = work.blocks[first + k];
+            if (shader.shade(work.sampler.packets()[first + k], work.sampler.points()[first + k],
+                             work.hits[k], colors)) {
+                stencils.pipeline.film.put(block.x, block.y, colors);
+            } else {
+                stencils.pipeline.film.put_background(block.x, block.y);
+            }
         }
+        timer.lap(work.stats.shade_ms);
     }
 }
 
@@ -363,8 +373,7 @@ void render_tile(const Stencils& stencils, Workspace& work, const Tile& tile) {
         stencils.pipeline.film.put_background(block.x, block.y);
     }
     if (stencils.plain() && !stencils.shaded && !stencils.pipeline.aovs) {
-        trace_samples(stencils, work, stencils.samples[0]);
-        return shade_pixels(stencils, work);
+        return trace_pixels(stencils, work);
     }
     work.sums.clear();
     for (const Vec2f offset : stencils.samples) {

@@ -98,15 +98,40 @@ bool Sampler::entered(const ScreenBox& box) const {
 }
 
 void Sampler::trace_blocks(std::span<const Block> blocks, Vec2f offset, std::span<HitPacket> hits) {
+    find_blocks(blocks, offset);
+    take_hits(0, hits.first(blocks.size()));
+}
+
+void Sampler::find_blocks(std::span<const Block> blocks, Vec2f offset) {
     points_.resize(blocks.size());
     place_blocks(spacing_, blocks, offset, points_.data());
     const ScreenBox box = shifted(bounds(blocks, spacing_), offset);
     if (!entered(box)) enter(box);
+    for (const Block& block : blocks) {
+        rays_ += static_cast<std::size_t>(block.columns) * static_cast<std::size_t>(block.rows);
+    }
+    make_room();
     // A few blocks find their own way faster.
     constexpr std::size_t kFew = 4;
-    if (blocks.size() <= kFew) return trace(hits);
-    const BlockRaster raster = raster_of(blocks, offset);
-    trace(hits, &raster);
+    found_ = blocks.size() > kFew;
+    if (found_) tracer_->find(raster_of(blocks, offset), points_);
+}
+
+void Sampler::take_hits(std::size_t first, std::span<HitPacket> hits) {
+    const auto points = std::span(points_).subspan(first, hits.size());
+    const auto rays = std::span(packets_).subspan(first, hits.size());
+    make_rays(camera_, points, rays.data());
+    if (found_) {
+        tracer_->resolve(first, points, rays, hits);
+    } else {
+        tracer_->intersect(points, rays, hits);
+    }
+    face_viewer(rays.data(), hits);
+}
+
+/// For a ray packet a point packet. Those that were made before are not cleared again.
+void Sampler::make_room() {
+    if (packets_.size() < points_.size()) packets_.resize(points_.size());
 }
 
 /// Where blocks lie; they are aligned to each other.
@@ -150,6 +175,7 @@ void Sampler::place_stencils(Block block, Vec2f offset, std::span<const Vec2f> s
     const ScreenBox box{own.left + reach.left, own.top + reach.top, own.right + reach.right,
                         own.bottom + reach.bottom};
     if (!entered(box)) enter(box);
+    rays_ += stencil.size() * kLanes;
 }
 
 void Sampler::trace_stencils(Block block, Vec2f offset, std::span<const Vec2f> stencil,
@@ -165,13 +191,13 @@ void Sampler::identify_stencils(Block block, Vec2f offset, std::span<const Vec2f
 }
 
 void Sampler::identify(std::span<HitPacket> hits) {
-    packets_.clear();
+    std::span<const RayPacket> rays;
     if (tracer_->needs_rays()) {
-        packets_.resize(points_.size());
+        make_room();
         make_rays(camera_, points_, packets_.data());
+        rays = packets();
     }
-    tracer_->identify(points_, packets_, hits.first(points_.size()));
-    count_rays();
+    tracer_->identify(points_, rays, hits.first(points_.size()));
 }
 
 bool Sampler::covers(std::uint32_t object, std::uint32_t primitive, Block block, Vec2f offset,
@@ -207,6 +233,7 @@ void Sampler::identify_points(std::span<const Vec2f> points, std::vector<HitPack
 
 void Sampler::place_points(std::span<const Vec2f> points) {
     const ScreenBox box = bounds(points);
+    rays_ += points.size();
     sort_by_place(points, box);
     const std::size_t count = (points.size() + kLanes - 1) / kLanes;
     points_.resize(count);
@@ -248,23 +275,12 @@ void Sampler::sort_by_place(std::span<const Vec2f> points, const ScreenBox& box)
     }
 }
 
-void Sampler::trace(std::span<HitPacket> hits, const BlockRaster* raster) {
-    packets_.resize(points_.size());
+void Sampler::trace(std::span<HitPacket> hits) {
+    make_room();
     make_rays(camera_, points_, packets_.data());
     const std::span<HitPacket> traced = hits.first(points_.size());
-    if (raster != nullptr) {
-        tracer_->intersect(*raster, points_, packets_, traced);
-    } else {
-        tracer_->intersect(points_, packets_, traced);
-    }
+    tracer_->intersect(points_, packets(), traced);
     face_viewer(packets_.data(), traced);
-    count_rays();
-}
-
-void Sampler::count_rays() {
-    for (const PointPacket& packet : points_) {
-        for (int i = 0; i < kLanes; ++i) rays_ += packet.active[i] != 0 ? 1 : 0;
-    }
 }
 
 }  // namespace ink

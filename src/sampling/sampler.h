@@ -37,6 +37,12 @@ class Sampler {
     /// come back with unit length and facing the ray's origin.
     void trace_blocks(std::span<const Block> blocks, Vec2f offset, std::span<HitPacket> hits);
 
+    /// The same in two steps: `find_blocks` looks for the hits, `take_hits` makes the rays and hits
+    /// of blocks `first` and on, as many as `hits` has room for. So all that is done with a few
+    /// blocks finds them in the nearest cache.
+    void find_blocks(std::span<const Block> blocks, Vec2f offset);
+    void take_hits(std::size_t first, std::span<HitPacket> hits);
+
     /// The ray stencils of a block's samples at the lattice points plus `offset`: one packet for
     /// each of the stencil's points. The pixels of a block share the point, which keeps the rays of
     /// a packet as coherent as those of the block itself.
@@ -61,7 +67,7 @@ class Sampler {
     std::span<const std::uint32_t> order() const { return order_; }
 
     /// The rays of the last call, packet by packet; not after those that identify.
-    std::span<const RayPacket> packets() const { return packets_; }
+    std::span<const RayPacket> packets() const { return {packets_.data(), points_.size()}; }
     /// The points of the last call, packet by packet.
     std::span<const PointPacket> points() const { return points_; }
 
@@ -71,9 +77,9 @@ class Sampler {
     void place_stencils(Block block, Vec2f offset, std::span<const Vec2f> stencil);
     BlockRaster raster_of(std::span<const Block> blocks, Vec2f offset);
     void place_points(std::span<const Vec2f> points);
-    void trace(std::span<HitPacket> hits, const BlockRaster* raster = nullptr);
+    void trace(std::span<HitPacket> hits);
     void identify(std::span<HitPacket> hits);
-    void count_rays();
+    void make_room();
     bool entered(const ScreenBox& box) const;
     void sort_by_place(std::span<const Vec2f> points, const ScreenBox& box);
 
@@ -82,7 +88,8 @@ class Sampler {
     float spacing_;
     ScreenBox area_{kInfinity, kInfinity, -kInfinity, -kInfinity};
     std::vector<PointPacket> points_;
-    std::vector<RayPacket> packets_;
+    std::vector<RayPacket> packets_;    ///< as many as there were points, and more
+    bool found_ = false;                ///< by find_blocks: hits need only be taken
     std::vector<std::uint32_t> cells_;  ///< of a raster of blocks
     std::vector<std::uint32_t> order_;
     std::vector<std::uint32_t> places_, starts_;  ///< of sort_by_place
