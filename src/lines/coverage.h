@@ -24,28 +24,6 @@ INKTRACE_INLINE float square_coverage(float inside, float nx, float ny) {
     return inside >= 0.0F ? 1.0F - outer : outer;
 }
 
-/// The same for many squares along a line of one normal.
-class SquareCoverage {
-  public:
-    INKTRACE_INLINE SquareCoverage(float nx, float ny) {
-        const float wide = std::max(std::abs(nx), std::abs(ny));
-        const float narrow = std::min(std::abs(nx), std::abs(ny));
-        reach_ = 0.5F * (wide + narrow);
-        flat_ = 0.5F * (wide - narrow);
-        slope_ = 1.0F / wide;
-        corner_ = 1.0F / (2.0F * std::max(wide * narrow, 1e-6F));
-    }
-    INKTRACE_INLINE float operator()(float inside) const {
-        const float off = std::min(std::abs(inside), reach_);
-        const float rest = reach_ - off;
-        const float outer = off <= flat_ ? 0.5F - off * slope_ : rest * rest * corner_;
-        return inside >= 0.0F ? 1.0F - outer : outer;
-    }
-
-  private:
-    float reach_, flat_, slope_, corner_;
-};
-
 /// Area of a pixel under a straight band of half width `half` at distance `distance` from the
 /// pixel's centre, (nx, ny) being the unit normal. Summed across a line it is exactly the band's
 /// width, at any angle.

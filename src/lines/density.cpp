@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/multiversion.h"
+
 namespace ink {
 
 namespace {
@@ -71,24 +73,52 @@ void LineDensity::finish() {
     }
 }
 
+/// Numbers by value, so that nothing that a loop writes can change them.
+struct LineDensity::Raster {
+    const Square* squares;
+    Vec2f shift;
+    float shrink, per_square;
+    int i0, j0, i1, j1, across;
+};
+
+LineDensity::Raster LineDensity::raster() const {
+    return {squares_.data(),   shift_,          shrink_, 1.0F / static_cast<float>(side_), i0_, j0_,
+            i0_ + across_ - 2, j0_ + down_ - 2, across_};
+}
+
 /// Between the middles of four squares, in proportion; squares cut by the border weigh less.
-float LineDensity::at(Vec2f point) const {
-    point = point * shrink_ + shift_;
-    const float x = point.x / static_cast<float>(side_) - 0.5F;
-    const float y = point.y / static_cast<float>(side_) - 0.5F;
-    const int i = std::clamp(static_cast<int>(std::floor(x)), i0_, i0_ + across_ - 2);
-    const int j = std::clamp(static_cast<int>(std::floor(y)), j0_, j0_ + down_ - 2);
-    const float right = std::clamp(x - static_cast<float>(i), 0.0F, 1.0F);
-    const float below = std::clamp(y - static_cast<float>(j), 0.0F, 1.0F);
-    const Square* upper = &squares_[square(i, j)];
-    const Square* lower = upper + across_;
+INKTRACE_INLINE float LineDensity::share_at(const Raster& r, Vec2f point) {
+    const float x = (point.x * r.shrink + r.shift.x) * r.per_square - 0.5F;
+    const float y = (point.y * r.shrink + r.shift.y) * r.per_square - 0.5F;
+    const int i = std::min(std::max(static_cast<int>(std::floor(x)), r.i0), r.i1);
+    const int j = std::min(std::max(static_cast<int>(std::floor(y)), r.j0), r.j1);
+    const float right = std::min(std::max(x - static_cast<float>(i), 0.0F), 1.0F);
+    const float below = std::min(std::max(y - static_cast<float>(j), 0.0F), 1.0F);
+    const Square* upper = r.squares + ((j - r.j0) * r.across + (i - r.i0));
+    const Square* lower = upper + r.across;
     const auto mix = [&](float Square::*value) {
         const float above = upper[0].*value + right * (upper[1].*value - upper[0].*value);
         const float under = lower[0].*value + right * (lower[1].*value - lower[0].*value);
         return above + below * (under - above);
     };
     const float searched = mix(&Square::searched);
-    return searched > 0.0F ? mix(&Square::inked) / searched : 0.0F;
+    const float inked = mix(&Square::inked);
+    return searched > 0.0F ? inked / searched : 0.0F;
+}
+
+INKTRACE_MULTIVERSION
+void LineDensity::shares_at(const Raster& all, std::span<const Vec2f> points,
+                            std::span<float> shares) {
+    const Raster raster = all;
+    const Vec2f* const from = points.data();
+    float* __restrict const to = shares.data();
+    for (std::size_t k = 0; k < points.size(); ++k) to[k] = share_at(raster, from[k]);
+}
+
+float LineDensity::at(Vec2f point) const { return share_at(raster(), point); }
+
+void LineDensity::at(std::span<const Vec2f> points, std::span<float> shares) const {
+    shares_at(raster(), points, shares);
 }
 
 void LineDensity::enlarge(float factor, Vec2f middle_before, Vec2f middle_after) {
@@ -100,7 +130,7 @@ namespace {
 
 /// exp(-x) for x >= 0 to 1e-5, from arithmetic that gives the same bits on every processor, which
 /// the library's does not.
-float decay(float x) {
+INKTRACE_INLINE float decay(float x) {
     const float z = std::min(x, 16.0F) * 0.125F;
     constexpr float kThird = 1.0F / 3.0F;
     constexpr float kFifth = 1.0F / 5.0F;
@@ -120,17 +150,39 @@ float decay(float x) {
 
 }  // namespace
 
-float width_scale(float share, float most) {
+namespace {
+
+INKTRACE_INLINE float scale_of(float share, float most) {
     // Up to here lines keep their width; from here on they approach `most`, with no kink between.
     const float free = 0.8F * most;
-    if (share <= free) return 1.0F;
     const float room = most - free;
-    return (free + room * (1.0F - decay((share - free) / room))) / share;
+    const float dense = std::max(share, free);
+    const float scale = (free + room * (1.0F - decay((dense - free) / room))) / dense;
+    return share <= free ? 1.0F : scale;
 }
+
+INKTRACE_MULTIVERSION
+void scales_of(float most, std::span<float> shares) {
+    float* const values = shares.data();
+    for (std::size_t k = 0; k < shares.size(); ++k) values[k] = scale_of(values[k], most);
+}
+
+}  // namespace
+
+float width_scale(float share, float most) { return scale_of(share, most); }
 
 float LineThinning::scale_at(Vec2f point, int level) const {
     if (most >= 1.0F) return 1.0F;
     return width_scale((level == 0 ? direct : all).at(point), most);
+}
+
+void LineThinning::scales_at(std::span<const Vec2f> points, std::span<float> scales) const {
+    if (most >= 1.0F) {
+        std::ranges::fill(scales, 1.0F);
+        return;
+    }
+    direct.at(points, scales);
+    scales_of(most, scales);
 }
 
 }  // namespace ink

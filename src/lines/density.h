@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "base/vec.h"
@@ -30,6 +31,8 @@ class LineDensity {
 
     /// Covered share about a place, without end: 2 if lines lie side by side twice.
     float at(Vec2f point) const;
+    /// The same about many places.
+    void at(std::span<const Vec2f> points, std::span<float> shares) const;
     /// From now on, places are those of a picture `factor` times as large.
     void enlarge(float factor, Vec2f middle_before, Vec2f middle_after);
 
@@ -40,6 +43,11 @@ class LineDensity {
         float searched = 0.0F;  ///< likewise
     };
 
+    struct Raster;
+    Raster raster() const;
+    static float share_at(const Raster& raster, Vec2f point);
+    static void shares_at(const Raster& raster, std::span<const Vec2f> points,
+                          std::span<float> shares);
     std::size_t square(int i, int j) const;
     float area(int i, int j) const;
 
@@ -65,6 +73,8 @@ struct LineThinning {
 
     /// What to scale the width of a line of this level by, see Segment.
     float scale_at(Vec2f point, int level) const;
+    /// The same about many places, of lines seen directly.
+    void scales_at(std::span<const Vec2f> points, std::span<float> scales) const;
 };
 
 }  // namespace ink

@@ -26,10 +26,27 @@ struct Row {
           nz(grid.nz.data() + first) {}
 };
 
-/// Suspicions between `a` and `b`, point by point.
+static_assert(kBackground == 0);
+
+/// Whether a packet's length of points is background in both rows.
+INKTRACE_INLINE bool is_empty(const GeometryId* a, const GeometryId* b) {
+    GeometryId any = 0;
+    for (int i = 0; i < kLanes; ++i) any |= a[i] | b[i];
+    return any == kBackground;
+}
+
+/// Suspicions between `a` and `b`, point by point. Background at either end of the rows is left
+/// out.
 INKTRACE_MULTIVERSION
 void compare_rows(const Row& a, const Row& b, int count, const DetectSettings& settings,
                   std::uint8_t* __restrict codes) {
+    int begin = 0;
+    int end = count;
+    while (begin + kLanes <= end && is_empty(a.id + begin, b.id + begin)) begin += kLanes;
+    while (end - kLanes >= begin && is_empty(a.id + end - kLanes, b.id + end - kLanes)) {
+        end -= kLanes;
+    }
+    std::memset(codes, 0, static_cast<std::size_t>(count));
     const auto [aid, apx, apy, apz, anx, any, anz] = a;
     const auto [bid, bpx, bpy, bpz, bnx, bny, bnz] = b;
     const float sine_squared = settings.chord_sine * settings.chord_sine;
@@ -37,7 +54,7 @@ void compare_rows(const Row& a, const Row& b, int count, const DetectSettings& s
     const float least_squared = settings.least_jump * settings.least_jump;
     const auto depth_code = settings.depths ? static_cast<std::uint32_t>(Suspicion::depth) : 0U;
     const auto normal_code = settings.normals ? static_cast<std::uint32_t>(Suspicion::normal) : 0U;
-    for (int i = 0; i < count; ++i) {
+    for (int i = begin; i < end; ++i) {
         const float cx = bpx[i] - apx[i];
         const float cy = bpy[i] - apy[i];
         const float cz = bpz[i] - apz[i];

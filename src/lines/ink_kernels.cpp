@@ -43,7 +43,7 @@ HWY_INLINE Number load(const Lanes<float>& lanes, int first) {
     return hn::Load(kFloats, lanes.data() + first);
 }
 
-/// SquareCoverage (lines/coverage.h) in lanes.
+/// square_coverage (lines/coverage.h) in lanes.
 class SquareCoverageLanes {
   public:
     HWY_INLINE explicit SquareCoverageLanes(Vec2f normal) {

@@ -5,8 +5,6 @@
 
 #include <hwy/highway.h>
 
-#include "lines/coverage.h"
-
 namespace ink {
 
 namespace {
@@ -20,6 +18,20 @@ constexpr FourLanes kFour;
 constexpr hn::FixedTag<std::int32_t, 4> kFourIntegers;
 
 Four set(float value) { return hn::Set(kFour, value); }
+
+/// square_coverage (lines/coverage.h) of four squares.
+Four covered(Four inside, Vec2f normal) {
+    const float wide = std::max(std::abs(normal.x), std::abs(normal.y));
+    const float narrow = std::min(std::abs(normal.x), std::abs(normal.y));
+    const Four reach = set(0.5F * (wide + narrow));
+    const Four off = hn::Min(hn::Abs(inside), reach);
+    const Four rest = hn::Sub(reach, off);
+    const Four flat = hn::Sub(set(0.5F), hn::Mul(off, set(1.0F / wide)));
+    const Four corner =
+        hn::Mul(hn::Mul(rest, rest), set(1.0F / (2.0F * std::max(wide * narrow, 1e-6F))));
+    const Four outer = hn::IfThenElse(hn::Le(off, set(0.5F * (wide - narrow))), flat, corner);
+    return hn::IfThenElse(hn::Ge(inside, set(0.0F)), hn::Sub(set(1.0F), outer), outer);
+}
 
 constexpr float kFixedPoint = 1 << 22;
 constexpr float kMostChange = 64.0F;
@@ -87,18 +99,15 @@ void EdgeSmoothing::add(const Segment& segment, const PixelColor& left, const Pi
     // In units of the quarter's side.
     const Four inside =
         hn::Mul(to_left(place(cell_x, quarter(x)), place(cell_y, quarter(y))), set(2.0F * q));
-    alignas(16) std::array<float, 4> beyond;
-    hn::Store(hn::IfThenElse(on_left, hn::Neg(inside), inside), kFour, beyond.data());
-    const SquareCoverage coverage(normal.x, normal.y);
-    for (float& value : beyond) value = coverage(value);
+    const Four beyond = covered(hn::IfThenElse(on_left, hn::Neg(inside), inside), normal);
     // Towards the right side's colour for corners on the left, and back.
-    const Four area = hn::Mul(hn::Load(kFour, beyond.data()), set(0.25F / (q * q) * kFixedPoint));
+    const Four area = hn::Mul(beyond, set(0.25F / (q * q) * kFixedPoint));
     alignas(16) std::array<float, 4> scale;
     hn::Store(hn::IfThenElse(on_left, area, hn::Neg(area)), kFour, scale.data());
 
     for (int corner = 0; corner < 4; ++corner) {
         const auto n = static_cast<std::size_t>(corner);
-        if (!(beyond[n] > 0.0F)) continue;
+        if (scale[n] == 0.0F) continue;
         const int i = cell_x + corner % 2;
         const int j = cell_y + corner / 2;
         const int pixel_x = (q_ == 1 ? i : floor_divide(i, q_)) - tile_.x0;

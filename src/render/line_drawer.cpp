@@ -18,9 +18,12 @@ void LineDrawer::draw(const Tile& tile, const std::vector<TileLines>& found) {
         gather(tile, found);
         if (near_.empty() && !face_edges_) return;
         ink_.begin(tile.x0, tile.y0, tile.x1 - tile.x0, tile.y1 - tile.y0);
-        for (const InkStroke* stroke : near_) {
-            ink_.draw(*stroke, width_scale(*stroke));
-            if (stroke->gap > 0.0F) leave_gap(*stroke);
+        thinning_.scales_at(middles_, scales_);
+        for (std::size_t k = 0; k < near_.size(); ++k) {
+            const InkStroke& stroke = *near_[k];
+            ink_.draw(stroke,
+                      stroke.direct ? scales_[k] * stroke.width_scale : width_scale(stroke));
+            if (stroke.gap > 0.0F) leave_gap(stroke);
         }
         if (face_edges_) ink_faces(tile);
         ink_.finish();
@@ -83,15 +86,23 @@ float LineDrawer::cue_depth(int x, int y, const NearestEdges& nearest,
 template <class Draw>
 void LineDrawer::for_each_face_block(const Tile& tile, Draw draw) {
     face_edges_->begin();
-    NearestEdges nearest;
+    middles_.clear();
     for (int y = tile.y0; y < tile.y1; y += kBlockSide) {
         for (int x = tile.x0; x < tile.x1; x += kBlockSide) {
+            middles_.push_back({static_cast<float>(x) + 0.5F * kBlockSide,
+                                static_cast<float>(y) + 0.5F * kBlockSide});
+        }
+    }
+    scales_.resize(middles_.size());
+    thinning_.scales_at(middles_, scales_);
+    NearestEdges nearest;
+    const float* scale_of_block = scales_.data();
+    for (int y = tile.y0; y < tile.y1; y += kBlockSide) {
+        for (int x = tile.x0; x < tile.x1; x += kBlockSide) {
+            const float thinned = *scale_of_block++;
             if (!face_edges_->measure(x, y, edges_.ink.reach(), nearest)) continue;
             Lanes<float> strength;
-            const float scale = cue_depth(x, y, nearest, strength) *
-                                thinning_.scale_at({static_cast<float>(x) + 0.5F * kBlockSide,
-                                                    static_cast<float>(y) + 0.5F * kBlockSide},
-                                                   0);
+            const float scale = cue_depth(x, y, nearest, strength) * thinned;
             const auto draw_style = [&](std::uint32_t object, const NearestEdges& edges) {
                 const std::size_t style = edges_.style_of(LineType::mesh, object);
                 draw(x, y, edges, strength, style, edges_.ink.styles[style].width_px * scale);
@@ -183,6 +194,7 @@ void LineDrawer::for_each_near_tile(const Tile& tile, const std::vector<TileLine
 /// The strokes that can change pixels of a tile.
 void LineDrawer::gather(const Tile& tile, const std::vector<TileLines>& found) {
     near_.clear();
+    middles_.clear();
     const float reach = std::ceil(edges_.ink.reach()) + 1.0F;
     const float left = static_cast<float>(tile.x0) - reach;
     const float right = static_cast<float>(tile.x1) + reach;
@@ -192,9 +204,12 @@ void LineDrawer::gather(const Tile& tile, const std::vector<TileLines>& found) {
         for (const InkStroke& s : lines.strokes) {
             const bool near = std::max(s.a.x, s.b.x) > left && std::min(s.a.x, s.b.x) < right &&
                               std::max(s.a.y, s.b.y) > top && std::min(s.a.y, s.b.y) < bottom;
-            if (near) near_.push_back(&s);
+            if (!near) continue;
+            near_.push_back(&s);
+            middles_.push_back((s.a + s.b) * 0.5F);
         }
     });
+    scales_.resize(near_.size());
 }
 
 void LineDrawer::write(const Tile& tile) {

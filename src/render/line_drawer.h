@@ -52,6 +52,8 @@ class LineDrawer {
     std::optional<FaceEdges> face_edges_;
     LinePlanes planes_;
     std::vector<const InkStroke*> near_;  ///< those within reach of the tile
+    std::vector<Vec2f> middles_;          ///< of what is to be drawn: near strokes, or blocks
+    std::vector<float> scales_;           ///< of their widths, where they are seen directly
     RenderStats stats_;
 };
 
