@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 
 #include "base/lanes.h"
@@ -27,6 +28,24 @@ void cover(const Lanes<float>& distance, const Lanes<float>& nx, const Lanes<flo
         const float near = std::min(distance[i], 1e6F);
         inks[i] = band_coverage(near, half, nx[i], ny[i]);
     }
+}
+
+/// Puts ink on a block. `t` is null where it does not matter. False if there is none.
+INKTRACE_MULTIVERSION
+bool add_ink(const Lanes<float>& inks, const Lanes<float>& strength, const Lanes<float>& behind,
+             Lanes<float>& coverage, Lanes<float>* t) {
+    std::int32_t any = 0;
+    for (int i = 0; i < kLanes; ++i) any |= inks[i] > 0.0F ? 1 : 0;
+    for (int i = 0; i < kLanes; ++i) {
+        coverage[i] = std::max(coverage[i], inks[i] * strength[i]);
+    }
+    if (t == nullptr) return any != 0;
+    Lanes<float>& nearest = *t;
+    for (int i = 0; i < kLanes; ++i) {
+        const float at = inks[i] > 0.0F ? behind[i] + kMeshBehind : kInfinity;
+        nearest[i] = std::min(nearest[i], at);
+    }
+    return any != 0;
 }
 
 Band make_band(const InkStroke& stroke, float width) {
@@ -145,13 +164,8 @@ void InkTile::draw_faces(int x, int y, const Lanes<float>& distance, const Lanes
         }
     }
     const std::size_t k = index(x, y) / kLanes;
-    bool any = false;
-    for (int i = 0; i < kLanes; ++i) {
-        if (inks[i] <= 0.0F) continue;
-        any = true;
-        layer.coverage[k][i] = std::max(layer.coverage[k][i], inks[i] * strength[i]);
-        if (!layer.t.empty()) layer.t[k][i] = std::min(layer.t[k][i], t[i] + kMeshBehind);
-    }
+    const bool any =
+        add_ink(inks, strength, t, layer.coverage[k], layer.t.empty() ? nullptr : &layer.t[k]);
     if (any && touched_[k] == 0) touched_[k] = kTouched;
 }
 
