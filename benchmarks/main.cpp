@@ -100,6 +100,8 @@ std::vector<Variant> variants(const Plan& plan) {
         threaded = lines;
         threaded.threads = plan.threads;
         add(fmt::format("edges, {} px, {} threads", width, plan.threads), threaded);
+        lines.lines.add(LineType::mesh);
+        add(fmt::format("edges, {} px, mesh lines too", width), lines);
         lines.lines = LineTypes::all();
         add(fmt::format("edges, {} px, all types", width), lines);
     }

@@ -6,48 +6,93 @@
 #include <variant>
 
 #include "accel/tracer.h"
+#include "base/lanes.h"
+#include "base/multiversion.h"
 #include "base/parallel.h"
 
 namespace ink {
 
 namespace {
+
 constexpr std::size_t kGrain = 1 << 15;
+
+/// Sixteen spheres, or points, of radius 0.
+struct BallLanes {
+    Lanes<float> x, y, z, radius;
+
+    void put(int lane, const Sphere& sphere) {
+        x[lane] = sphere.centre.x;
+        y[lane] = sphere.centre.y;
+        z[lane] = sphere.centre.z;
+        radius[lane] = sphere.radius;
+    }
+};
+
+INKTRACE_MULTIVERSION
+void reach(const BallLanes& balls, const std::array<Vec3f, 4>& normals,
+           std::array<Lanes<float>, 4>& least) {
+    for (std::size_t k = 0; k < normals.size(); ++k) {
+        const Vec3f n = normals[k];
+        for (int i = 0; i < kLanes; ++i) {
+            const float at =
+                n.x * balls.x[i] + n.y * balls.y[i] + n.z * balls.z[i] - balls.radius[i];
+            least[k][i] = std::min(least[k][i], at);
+        }
+    }
+}
+
 }  // namespace
 
 std::array<double, 4> supports(const Scene& scene, const std::array<Vec3f, 4>& normals) {
     constexpr double kMax = std::numeric_limits<double>::max();
     std::array<double, 4> least{kMax, kMax, kMax, kMax};
     std::mutex mutex;
-    const auto reduce = [&](std::size_t count, const auto& value) {
+    const auto add = [&](const std::array<float, 4>& part) {
+        const std::scoped_lock lock(mutex);
+        for (std::size_t k = 0; k < 4; ++k) least[k] = std::min<double>(least[k], part[k]);
+    };
+    const auto reduce_balls = [&](std::size_t count, const auto& ball) {
         parallel_ranges(count, kGrain, [&](std::size_t begin, std::size_t end) {
-            std::array<float, 4> part{kInfinity, kInfinity, kInfinity, kInfinity};
-            for (std::size_t i = begin; i < end; ++i) {
-                for (std::size_t k = 0; k < 4; ++k) {
-                    part[k] = std::min(part[k], value(normals[k], i));
+            std::array<Lanes<float>, 4> lanes;
+            for (Lanes<float>& lane : lanes) lane.fill(kInfinity);
+            BallLanes balls;
+            for (std::size_t first = begin; first < end; first += kLanes) {
+                for (int i = 0; i < kLanes; ++i) {
+                    // Unused lanes repeat the last one.
+                    balls.put(i, ball(std::min(first + static_cast<std::size_t>(i), end - 1)));
                 }
+                reach(balls, normals, lanes);
             }
-            const std::scoped_lock lock(mutex);
-            for (std::size_t k = 0; k < 4; ++k) least[k] = std::min<double>(least[k], part[k]);
+            std::array<float, 4> part{};
+            for (std::size_t k = 0; k < 4; ++k) part[k] = *std::ranges::min_element(lanes[k]);
+            add(part);
         });
+    };
+    const auto reduce_points = [&](std::size_t count, const auto& point) {
+        reduce_balls(count, [&](std::size_t i) { return Sphere{point(i), 0.0F}; });
     };
     for (const Object& object : scene.objects()) {
         if (const auto* shape = std::get_if<Spheres>(&object.shape)) {
-            reduce(shape->count(), [&](Vec3f n, std::size_t i) {
-                const Sphere sphere = shape->at(i);
-                return dot(n, sphere.centre) - sphere.radius;
-            });
+            reduce_balls(shape->count(), [&](std::size_t i) { return shape->at(i); });
         } else if (const auto* mesh = std::get_if<Mesh>(&object.shape)) {
-            reduce(mesh->vertices.size(),
-                   [&](Vec3f n, std::size_t i) { return dot(n, mesh->vertices[i]); });
+            reduce_points(mesh->vertices.size(), [&](std::size_t i) { return mesh->vertices[i]; });
         } else if (const auto* glyphs = std::get_if<Glyphs>(&object.shape)) {
-            reduce(glyphs->placements.size(), [&](Vec3f n, std::size_t i) {
-                const Vec3d opposite = to_double(-n);
-                return static_cast<float>(-support(glyphs->shape, glyphs->placements[i], opposite));
+            const std::size_t count = glyphs->placements.size();
+            parallel_ranges(count, kGrain, [&](std::size_t begin, std::size_t end) {
+                std::array<float, 4> part{kInfinity, kInfinity, kInfinity, kInfinity};
+                for (std::size_t i = begin; i < end; ++i) {
+                    for (std::size_t k = 0; k < 4; ++k) {
+                        const Vec3d opposite = to_double(-normals[k]);
+                        const double far = support(glyphs->shape, glyphs->placements[i], opposite);
+                        part[k] = std::min(part[k], static_cast<float>(-far));
+                    }
+                }
+                add(part);
             });
         } else {
             const auto& solids = std::get<Hexahedra>(object.shape);
-            reduce(solids.corners.size() * 8,
-                   [&](Vec3f n, std::size_t i) { return dot(n, solids.corners[i / 8][i % 8]); });
+            reduce_points(solids.corners.size() * 8,
+                          [&](std::size_t i) { return solids.corners[i / 8][i % 8]; });
         }
     }
     return least;

@@ -231,8 +231,8 @@ void FaceEdges::add_edge(Corner a, Corner b) {
     const double length = ink::length(d);
     const Vec2d along = length > 0.0 ? d * (1.0 / length) : Vec2d{1.0, 0.0};
     const Vec2d off = (a.point + b.point) * 0.5 - to_double(projection_.centre);
-    const double slope = projection_.slope_step * ink::length(off);
-    const double t = 0.5 * (a.depth + b.depth) * std::sqrt(1.0 + slope * slope);
+    const double step = projection_.slope_step;
+    const double t = 0.5 * (a.depth + b.depth) * std::sqrt(1.0 + step * step * dot(off, off));
     edges_.push_back(
         {to_float(a.point), to_float(along), static_cast<float>(length), static_cast<float>(t)});
 }

@@ -1,6 +1,7 @@
 #include "render/line_finder.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <utility>
@@ -494,22 +495,39 @@ void LineFinder::map_faces(const Tile& tile) {
     }
 }
 
+namespace {
+
+/// How many of a block's points see another primitive of their object than the next one in their
+/// row and the next one in their column.
+INKTRACE_MULTIVERSION
+int count_changes(const HitPacket& hits) {
+    // Behind the last row there is nothing.
+    std::array<std::uint32_t, kLanes + kBlockSide> object{};
+    std::array<std::uint32_t, kLanes + kBlockSide> primitive{};
+    for (std::size_t i = 0; i < kLanes; ++i) {
+        object[i] = hits.object.at(i);
+        primitive[i] = hits.primitive.at(i);
+    }
+    std::fill(object.begin() + kLanes, object.end(), kNoObject);
+    int changes = 0;
+    for (std::size_t step : {std::size_t{1}, std::size_t{kBlockSide}}) {
+        for (std::size_t i = 0; i < kLanes; ++i) {
+            const bool within = step != 1 || i % kBlockSide + 1 < kBlockSide;
+            const bool alike = object[i] == object[i + step] && object[i] != kNoObject;
+            changes += within && alike && primitive[i] != primitive[i + step] ? 1 : 0;
+        }
+    }
+    return changes;
+}
+
+}  // namespace
+
 /// How long the lines between faces are in a block, from how often its points see different ones:
 /// a line of any direction crosses lattice edges 4 / pi times a spacing, on average.
 void LineFinder::add_face_density(std::size_t block) {
     const Block& place = blocks_[block];
     const HitPacket& hits = hits_[block];
-    int changes = 0;
-    const auto compare = [&](int a, int b) {
-        const bool one_object = hits.object[a] == hits.object[b] && hits.object[a] != kNoObject;
-        changes += one_object && hits.primitive[a] != hits.primitive[b] ? 1 : 0;
-    };
-    for (int j = 0; j < kBlockSide; ++j) {
-        for (int i = 0; i + 1 < kBlockSide; ++i) {
-            compare(j * kBlockSide + i, j * kBlockSide + i + 1);
-            compare(i * kBlockSide + j, (i + 1) * kBlockSide + j);
-        }
-    }
+    const int changes = count_changes(hits);
     if (changes == 0) return;
     const std::uint32_t object =
         *std::ranges::find_if(hits.object, [](std::uint32_t o) { return o != kNoObject; });
