@@ -350,5 +350,32 @@ TEST(Slit, NarrowerThanAQuarterOfTheLatticesSpacingHasNoLine) {
     }
 }
 
+/// What meets in the depth of such a crack, next to a lattice point that looks into it, is not
+/// drawn either: it would be a dot.
+TEST(Slit, HasNoDotWhereTwoWallsMeetInIt) {
+    const Surface whole = plane(1, {24, 24, 0}, {0.1, 0.2, 1});
+    for (const double angle : {0.0, 17.0, 45.0, 71.0}) {
+        for (const double off : {0.0, 0.004, 0.01, 0.02}) {
+            const double nx = std::sin(angle * kDegrees);
+            const double ny = -std::cos(angle * kDegrees);
+            // A steep groove, the bottom of which is sharp.
+            constexpr double kHalf = 0.05;
+            const Surface grooved{1, [=](double x, double y) -> std::optional<Hit> {
+                                      const double across = (x - 24.5) * nx + (y - 24.5) * ny;
+                                      Hit hit = *whole.at(x, y);
+                                      if (std::abs(across) > kHalf) return hit;
+                                      const bool down = across < off;
+                                      const double slope =
+                                          1.0 / (down ? -off - kHalf : kHalf - off);
+                                      hit.z += slope * across - (down ? -kHalf : kHalf) * slope;
+                                      hit.normal = {-slope * nx, slope * ny, 1.0};
+                                      return hit;
+                                  }};
+            const Found found = search({{grooved}}, 1);
+            EXPECT_TRUE(found.segments.empty()) << angle << ", " << off << list(loose_ends(found));
+        }
+    }
+}
+
 }  // namespace
 }  // namespace ink::test

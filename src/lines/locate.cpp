@@ -501,16 +501,37 @@ void Locator::drop_slits(float spacing, const SampleFunction& sample) {
         const Sample& before = second ? interval.at_a : interval.at_b;
         const Sample& within = second ? interval.at_b : interval.at_a;
         if (is_slit(before, within, samples_[n])) interval.state = State::smooth;
+        const bool both = n > 0 && active_[n - 1] / 2 == active_[n] / 2;
+        if (both && lies_in_slit(interval, samples_[n - 1], samples_[n])) {
+            interval.state = State::smooth;
+        }
     }
 }
 
+namespace {
+
+bool one_surface(const Sample& a, const Sample& b, float least_turn) {
+    constexpr float kOneSurface = 0.2F;
+    return a.id == b.id && turn(a, b) <= least_turn && jump_sine(a, b) < kOneSurface;
+}
+
+}  // namespace
+
 /// Whether the surface before the slit goes on beyond it, and is not what is seen within.
 bool Locator::is_slit(const Sample& before, const Sample& within, const Sample& beyond) const {
-    constexpr float kOneSurface = 0.2F;
-    const auto one_surface = [&](const Sample& a, const Sample& b) {
-        return a.id == b.id && turn(a, b) <= least_turn_ && jump_sine(a, b) < kOneSurface;
+    return one_surface(before, beyond, least_turn_) && !one_surface(within, beyond, least_turn_);
+}
+
+/// Whether a crossing lies in a slit: the same surface on both sides of it, of which neither of its
+/// own two sides is part.
+bool Locator::lies_in_slit(const Interval& interval, const Sample& beyond,
+                           const Sample& on_other_side) const {
+    const auto apart = [&](const Sample& side) {
+        return !one_surface(side, beyond, least_turn_) &&
+               !one_surface(side, on_other_side, least_turn_);
     };
-    return one_surface(before, beyond) && !one_surface(within, beyond);
+    return one_surface(beyond, on_other_side, least_turn_) && apart(interval.at_a) &&
+           apart(interval.at_b);
 }
 
 /// A front surface that turns away at its limb is so steep there that a small gap behind it could

@@ -141,6 +141,8 @@ class Locator {
     bool touch(const Interval& interval) const;
     void drop_slits(float spacing, const SampleFunction& sample);
     bool is_slit(const Sample& before, const Sample& within, const Sample& beyond) const;
+    bool lies_in_slit(const Interval& interval, const Sample& beyond,
+                      const Sample& on_other_side) const;
     void refine_steep(const SampleFunction& sample);
     void move_end(Interval& interval, bool first, Vec2f point, const Sample& sample) const;
     bool surfaces_meet(const Interval& interval) const;
