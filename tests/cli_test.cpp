@@ -426,6 +426,13 @@ TEST_F(CommandLine, DrawsLinesAsCurves) {
     EXPECT_EQ(json["format"], "inktrace-lines");
     EXPECT_GT(json["lines"].size(), 30U);
 
+    // What curves cannot show is said.
+    const Outcome soft = run({"render", kSample, "-o", "b.svg", "--size", "40x30", "--metric",
+                              "linear", "--halo", "2px"});
+    EXPECT_EQ(soft.status, 0);
+    expect_says(soft.err, {"no soft profile", "--metric linear", "no halos", "--halo 2px"});
+    expect_says(read_bytes(file("b.svg")), {"inktrace:Settings=", "</rdf:RDF>"});
+
     EXPECT_EQ(run({"render", kSample, "-o", "a.pdf", "--size", "200x150"}).status, 0);
     EXPECT_TRUE(read_bytes(file("a.pdf")).starts_with("%PDF-"));
 }

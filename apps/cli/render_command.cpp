@@ -89,6 +89,24 @@ void write_stats(const std::filesystem::path& file, const nlohmann::ordered_json
     refuse_stats(file);
 }
 
+/// Says what curves cannot show of the settings.
+void warn_about_curves(const RenderArguments& arguments) {
+    const Settings& settings = arguments.settings;
+    const std::string metric = settings.get("metric");
+    if (!metric.empty() && metric != "solid") {
+        say(
+            fmt::format("{}: warning: curves have no soft profile: lines are solid, without "
+                        "--metric {}\n",
+                        arguments.output, metric));
+    }
+    if (settings.get("halo") != Settings().get("halo")) {
+        say(
+            fmt::format("{}: warning: curves have no halos: lines go on to the ones in front, "
+                        "without --halo {}\n",
+                        arguments.output, settings.get("halo")));
+    }
+}
+
 void run(const RenderArguments& arguments) {
     if (is_animation(arguments)) return run_animation(arguments);
     RenderOptions options = options_for_output(arguments.output);
@@ -97,6 +115,7 @@ void run(const RenderArguments& arguments) {
         options.curves = true;
     }
     validate(arguments.settings, options);
+    if (!options.inked && !arguments.quiet) warn_about_curves(arguments);
     check_stats_file(arguments.stats_file);
     const auto start = std::chrono::steady_clock::now();
     Report report;

@@ -35,8 +35,9 @@ struct Segment {
     /// Lattice points whose colours the two sides have: indices into the grid that was searched.
     std::uint32_t left_sample = 0, right_sample = 0;
     bool spans_cell =
-        false;            ///< runs from one side of its cell to another, not to a junction in it
-    bool hidden = false;  ///< on a surface behind others
+        false;              ///< runs from one side of its cell to another, not to a junction in it
+    bool hidden = false;    ///< on a surface behind others
+    bool for_data = false;  ///< a line between faces that is drawn without it (FaceEdges)
     /// How many mirrors, panes of glass and transparent surfaces it is seen by: 0 if directly.
     std::uint8_t level = 0;
 };

@@ -142,7 +142,7 @@ void LineDrawer::write_planes(const Tile& tile, const std::vector<TileLines>& fo
     if (edges_.draw_lines) {
         for_each_near_tile(tile, found, [&](const TileLines& lines) {
             for (const Segment& segment : lines.segments) {
-                if (!edges_.wanted.has(segment.type)) continue;
+                if (!edges_.wanted.has(segment.type) || segment.for_data) continue;
                 const InkStroke stroke = make_ink_stroke(segment, edges_.style_of(segment));
                 const LineStyle& style = edges_.ink.styles[stroke.style];
                 planes_.add(segment, style.width_px * width_scale(stroke));

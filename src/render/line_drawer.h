@@ -21,7 +21,7 @@ class LineDrawer {
     /// `faces` is what lines between faces are drawn from; null if there are none.
     LineDrawer(const Edges& edges, const LineThinning& thinning, const FaceMap* faces)
         : edges_(edges), thinning_(thinning), ink_(edges.ink) {
-        if (faces == nullptr || edges.pipeline.lines.drawing != nullptr) return;
+        if (faces == nullptr) return;
         face_edges_.emplace(edges.pipeline.camera.projection(), *faces);
         faces_ = faces;
     }

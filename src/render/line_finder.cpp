@@ -331,7 +331,7 @@ void LineFinder::keep() {
 }
 
 void LineFinder::keep_stroke(const Segment& segment) {
-    if (!edges_.wanted.has(segment.type)) return;
+    if (!edges_.wanted.has(segment.type) || segment.for_data) return;
     const InkStroke stroke = make_ink_stroke(segment, edges_.style_of(segment));
     // Those between faces are counted by add_face_density.
     if (segment.type != LineType::mesh) count(stroke);
@@ -552,12 +552,6 @@ void LineFinder::cross_faces() {
         const SuspectEdge& edge = suspects_[crossing.edge];
         marks_[grid_.index(edge.i, edge.j)] |= edge.down ? kCrossedDown : kCrossedRight;
     }
-    if (edges_.pipeline.lines.drawing != nullptr) {
-        // Who asks for the lines as data wants them to go on from cell to cell.
-        for (int j = 0; j + 1 < grid_.height; ++j) {
-            for (int i = 0; i + 1 < grid_.width; ++i) mark(i, j);
-        }
-    }
     for (const Crossing& crossing : crossings_) {
         const SuspectEdge& edge = suspects_[crossing.edge];
         if (crossing.type == LineType::crease) continue;
@@ -570,6 +564,7 @@ void LineFinder::cross_faces() {
         cross_faces(i, j, true);
         cross_faces(i + 1, j, true);
     }
+    if (edges_.pipeline.lines.drawing != nullptr) cross_all_faces();
 }
 
 /// Marks a cell of the grid, if it is one.
@@ -578,6 +573,16 @@ void LineFinder::mark(int i, int j) {
     marks_[grid_.index(i, j)] |= kMarked;
     marked_.push_back({i, j});
     faces_->mark(grid_.x0 + i, grid_.y0 + j);
+}
+
+/// Who asks for the lines as data wants them to go on from cell to cell.
+void LineFinder::cross_all_faces() {
+    for (int j = 0; j < grid_.height; ++j) {
+        for (int i = 0; i < grid_.width; ++i) {
+            if (i + 1 < grid_.width) cross_faces(i, j, false);
+            if (j + 1 < grid_.height) cross_faces(i, j, true);
+        }
+    }
 }
 
 bool LineFinder::marked(int i, int j) const { return (marks_[grid_.index(i, j)] & kMarked) != 0; }
@@ -616,15 +621,18 @@ void LineFinder::cross_faces(int i, int j, bool down) {
         {static_cast<std::uint16_t>(i), static_cast<std::uint16_t>(j), down, Suspicion::none});
 }
 
-/// Elsewhere they are drawn without being found (FaceEdges).
+/// Elsewhere they are drawn without being found (FaceEdges), and kept as data only.
 void LineFinder::drop_unmarked_faces() {
-    std::erase_if(segments_, [this](const Segment& segment) {
-        if (segment.type != LineType::mesh) return false;
+    for (Segment& segment : segments_) {
+        if (segment.type != LineType::mesh) continue;
         const Vec2f middle = (segment.a + segment.b) * (0.5F / grid_.spacing);
         const int i = static_cast<int>(std::floor(middle.x - 0.5F)) - grid_.x0;
         const int j = static_cast<int>(std::floor(middle.y - 0.5F)) - grid_.y0;
-        return !marked(std::clamp(i, 0, grid_.width - 2), std::clamp(j, 0, grid_.height - 2));
-    });
+        segment.for_data =
+            !marked(std::clamp(i, 0, grid_.width - 2), std::clamp(j, 0, grid_.height - 2));
+    }
+    if (edges_.pipeline.lines.drawing != nullptr) return;
+    std::erase_if(segments_, [](const Segment& segment) { return segment.for_data; });
 }
 
 /// More samples, for the bisection.

@@ -138,6 +138,7 @@ class LineFinder {
     void cross_faces(int i, int j, bool down);
     void drop_unmarked_faces();
     void mark(int i, int j);
+    void cross_all_faces();
     bool marked(int i, int j) const;
     std::uint32_t block_index(int i, int j) const;
     PixelColor color_at(int i, int j) const;

@@ -38,7 +38,7 @@ void repair(const Edges& edges, const FoldRepairs& repairs, std::span<const Segm
 void make_strokes(const Edges& edges, TileLines& tile) {
     tile.strokes.clear();
     for (const Segment& segment : tile.segments) {
-        if (!edges.draw_lines || !edges.wanted.has(segment.type)) continue;
+        if (!edges.draw_lines || !edges.wanted.has(segment.type) || segment.for_data) continue;
         tile.strokes.push_back(make_ink_stroke(segment, edges.style_of(segment)));
     }
 }

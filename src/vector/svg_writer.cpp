@@ -109,12 +109,14 @@ void SvgText::add_head() {
         art_.size.height);
     add("<title>{}</title>\n", xml_text(art_.title));
     add("<desc>Feature lines of {}, as curves</desc>\n", xml_text(art_.title));
-    text_ += "<metadata>\n";
+    // As RDF, which Inkscape keeps; other elements it complains of. Keys are names.
+    text_ +=
+        "<metadata>\n<rdf:RDF xmlns:rdf=\"http://www.w3.org/1999/02/22-rdf-syntax-ns#\" "
+        "xmlns:inktrace=\"urn:inktrace\">\n<rdf:Description rdf:about=\"\"";
     for (const auto& [key, value] : art_.metadata) {
-        add("<entry xmlns=\"urn:inktrace\" name=\"{}\">{}</entry>\n", xml_text(key),
-            xml_text(value));
+        add(" inktrace:{}=\"{}\"", key, xml_text(value));
     }
-    text_ += "</metadata>\n";
+    text_ += "/>\n</rdf:RDF>\n</metadata>\n";
 }
 
 void SvgText::add_paper() {
