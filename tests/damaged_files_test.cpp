@@ -9,6 +9,7 @@
 
 #include <chrono>
 #include <csignal>
+#include <cstdint>
 #include <filesystem>
 #include <set>
 #include <string>
@@ -118,6 +119,18 @@ void expect_a_good_end(const Outcome& outcome, const fs::path& file, bool loads)
     if (outcome.status != 1) return;
     EXPECT_NE(said.find(file.filename().string()), std::string::npos) << said;
     EXPECT_NE(said.find_first_of(";?"), std::string::npos) << "no remedy: " << said;
+}
+
+TEST(LargeFiles, AreRefusedBeforeTheyAreReadWhereTheyDoNotFit) {
+    if (kSanitized) GTEST_SKIP() << "sanitizers map terabytes for themselves";
+    const TemporaryFolder folder;
+    const fs::path file = folder.write("large.vtp", "<VTKFile");
+    fs::resize_file(file, std::uintmax_t{8} << 30);  // takes no place on the disk
+    const Outcome outcome = run(folder.path(), {"info", file});
+    expect_a_good_end(outcome, file, false);
+    EXPECT_NE(outcome.messages.find("needs at least 6.4 GB of memory to be read, but"),
+              std::string::npos)
+        << outcome.messages;
 }
 
 class DamagedFiles : public testing::TestWithParam<const char*> {};

@@ -27,11 +27,15 @@ void announce_cost(const Scene& scene, const std::string& output) {
     const std::size_t primitives = scene.primitive_count();
     if (primitives < kLarge) return;
     const SceneCost cost = scene.cost();
-    say(
-        fmt::format("{}: {} primitives; takes about {:.1f} GB of memory, and {:.0f} s before the "
-                    "first pixels\n",
-                    output, primitives, static_cast<double>(cost.bytes) * 1e-9,
-                    std::max(cost.build_seconds, 1.0)));
+    const double seconds = std::max(cost.build_seconds, 1.0);
+    const std::string with_light =
+        cost.ambient_seconds > seconds
+            ? fmt::format(", {:.0f} s with ambient light", seconds + cost.ambient_seconds)
+            : std::string();
+    say(fmt::format(
+        "{}: {} primitives; takes up to {:.1f} GB of memory, and about {:.0f} s before "
+        "the first pixels{}\n",
+        output, primitives, static_cast<double>(cost.bytes) * 1e-9, seconds, with_light));
 }
 
 double ms_since(std::chrono::steady_clock::time_point start) {

@@ -44,8 +44,9 @@ struct FileInfo {
 
 /// What a scene will take. Estimates, from measurements.
 struct SceneCost {
-    std::uint64_t bytes = 0;     ///< of memory at most, to make it ready for rays, itself included
-    double build_seconds = 0.0;  ///< until then, with all threads
+    std::uint64_t bytes = 0;       ///< of memory at most, to draw it, itself included
+    double build_seconds = 0.0;    ///< until it is ready for rays, with all threads
+    double ambient_seconds = 0.0;  ///< more, where there is ambient light
 };
 
 /// What loading keeps beside what is drawn.

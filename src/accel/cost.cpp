@@ -41,13 +41,23 @@ constexpr double kClusterBytes = (sizeof(Cluster) + 26.0 + 22.0) / kLanes;
 /// While clusters are made, each primitive has a key and its number.
 constexpr double kKeyBytes = 16.0 + sizeof(std::uint32_t);
 
-// Nanoseconds of one thread that building takes for a primitive, roughly: to warn of minutes, not to
-// tell seconds. The hierarchy of glyphs is Embree's.
+// Nanoseconds of one thread that building takes for a primitive, roughly: to warn of minutes, not
+// to tell seconds. The hierarchy of glyphs is Embree's.
 constexpr double kSphereNs = 150.0;
 constexpr double kTriangleNs = 200.0;
 constexpr double kGlyphNs = 600.0;
 /// Of Embree's hierarchy over glyphs, a primitive; likewise.
 constexpr double kGlyphBytes = 160.0;
+
+/// Of more spheres and triangles than this, Embree traces pictures of usual sizes
+/// (suits_screen_tracer). Its hierarchy takes a primitive about so much.
+constexpr double kManyPrimitives = 2.0 * 1024.0 * 1024.0 * kLanes;
+constexpr double kEmbreeBytes = 36.0;
+constexpr double kEmbreeNs = 700.0;
+
+/// What ambient light takes for a sphere, of tens of millions of them.
+constexpr double kAmbientBytes = 45.0;
+constexpr double kAmbientNs = 2000.0;
 
 struct Build {
     double bytes, seconds;
@@ -74,6 +84,7 @@ Build build_of(const Others& shape) {
 
 Cost cost_of(std::span<const Object> objects) {
     Cost cost;
+    double many = 0.0;
     for (const Object& object : objects) {
         const Build build =
             std::visit([](const auto& shape) { return build_of(shape); }, object.shape);
@@ -82,8 +93,22 @@ Cost cost_of(std::span<const Object> objects) {
         cost.stored_bytes += size_of(object.elements);
         cost.build_bytes += build.bytes;
         cost.build_seconds += build.seconds;
+        if (const auto* spheres = std::get_if<Spheres>(&object.shape)) {
+            const auto count = static_cast<double>(spheres->count());
+            cost.ambient_bytes += kAmbientBytes * count;
+            cost.ambient_seconds += 1e-9 * kAmbientNs * count;
+        }
+        if (!std::holds_alternative<Glyphs>(object.shape)) {
+            many += static_cast<double>(object.primitive_count());
+        }
     }
-    cost.build_seconds /= std::max(std::thread::hardware_concurrency(), 1U);
+    if (many > kManyPrimitives) {
+        cost.build_bytes += kEmbreeBytes * many;
+        cost.build_seconds += 1e-9 * kEmbreeNs * many;
+    }
+    const double threads = std::max(std::thread::hardware_concurrency(), 1U);
+    cost.build_seconds /= threads;
+    cost.ambient_seconds /= threads;
     return cost;
 }
 

@@ -177,7 +177,9 @@ std::size_t Scene::primitive_count() const {
 
 SceneCost Scene::cost() const {
     const ink::Cost cost = ink::cost_of(impl_->objects);
-    return {.bytes = cost.bytes(), .build_seconds = cost.build_seconds};
+    return {.bytes = cost.bytes(),
+            .build_seconds = cost.build_seconds,
+            .ambient_seconds = cost.ambient_seconds};
 }
 
 FileInfo inspect(const std::filesystem::path& file, const Settings& settings) {
