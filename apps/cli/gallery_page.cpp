@@ -48,7 +48,7 @@ std::string command(const Panel& panel) {
 }
 
 std::string figure_of(const Panel& panel) {
-    std::string html = fmt::format("<figure><img src=\"{}.{}\" alt=\"{}\"><figcaption>{}",
+    std::string html = fmt::format(R"(<figure><img src="{}.{}" alt="{}"><figcaption>{})",
                                    panel.name, panel.is_diagram ? "svg" : "png",
                                    escaped(panel.caption), escaped(panel.caption));
     if (!panel.scene.empty()) {

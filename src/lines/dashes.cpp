@@ -42,7 +42,7 @@ void cut_into_strokes(const Chain& chain, const Dashes* dashes, std::vector<Segm
     for (std::size_t k = 0; k + (chain.closed ? 0 : 1) < count; ++k) {
         const Vec2f a = chain.points[k];
         const Vec2f b = chain.points[(k + 1) % count];
-        const double size = static_cast<double>(length(b - a));
+        const auto size = static_cast<double>(length(b - a));
         if (size == 0.0) continue;
         const double end = begin + size;
         const auto point = [&](double s) {

@@ -264,6 +264,7 @@ LineThinning thinning_of(const Edges& edges,
 void finish_fringes(const Edges& edges, const std::vector<TileLines>& found, WorkLoop& loop) {
     if (!edges.smooth_shading) return;
     std::vector<const Fringe*> fringes;
+    fringes.reserve(found.size());
     for (const TileLines& tile : found) fringes.push_back(&tile.fringe);
     const ColorPacket& empty = edges.pipeline.shader.background();
     const PixelColor background{empty.r[0], empty.g[0], empty.b[0], empty.a[0]};

@@ -60,7 +60,7 @@ std::uint32_t mixed(const std::array<std::uint32_t, 4>& corners,
     std::array<float, 4> sum{};
     float all = 0.0F;
     for (std::size_t k = 0; k < 4; ++k) {
-        const float alpha = static_cast<float>(corners[k] >> 24U);
+        const auto alpha = static_cast<float>(corners[k] >> 24U);
         const float weight = weights[k] * alpha;
         for (unsigned c = 0; c < 3; ++c) {
             sum[c] += weight * static_cast<float>((corners[k] >> (8U * c)) & 0xFFU);

@@ -73,6 +73,7 @@ struct Words {
     std::string print_list(const std::vector<T>& list) const {
         if (list.empty()) return "none";
         std::vector<std::string> words;
+        words.reserve(list.size());
         for (const T value : list) words.push_back(print(value));
         return fmt::format("{}", fmt::join(words, ","));
     }

@@ -65,6 +65,7 @@ struct Kinds {
 
 std::vector<ColorScale::Entry> with_colors(const std::vector<std::string>& names) {
     std::vector<ColorScale::Entry> table;
+    table.reserve(names.size());
     for (const std::string& name : names) table.push_back({name, category_color(table.size())});
     return table;
 }
