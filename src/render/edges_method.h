@@ -1,92 +1,15 @@
 #pragma once
 
-#include <array>
-#include <memory>
 #include <optional>
 #include <vector>
 
 #include "lines/density.h"
-#include "lines/detect.h"
-#include "lines/ink.h"
-#include "lines/line_type.h"
-#include "lines/locate.h"
 #include "lines/segment.h"
-#include "render/edge_smoothing.h"
+#include "render/edges.h"
 #include "render/face_map.h"
 #include "render/pipeline.h"
-#include "render/tiles.h"
-#include "sampling/samples.h"
-#include "sampling/surfaces.h"
 
 namespace ink {
-
-/// The lines of one tile on their way from the pass that finds them to the pass that draws.
-struct TileLines {
-    std::vector<InkStroke> strokes;  ///< to be inked
-    std::vector<Segment> segments;   ///< all, in full, where anything asks for more than ink
-    Fringe fringe;
-};
-
-/// The method's fixed parts, shared by all tiles.
-struct Edges {
-    explicit Edges(const Pipeline& shared);
-
-    /// Index into the ink's styles, of which those of hidden lines come last.
-    std::size_t style_of(const Segment& segment) const;
-    /// Index of the tile that a point was searched in.
-    std::size_t search_tile_at(Vec2f point) const;
-    std::size_t search_tiles_across() const;
-    std::size_t style_of(LineType type, std::uint32_t object) const;
-    /// Whether self-occlusions are made whole once all are found.
-    bool mends_lines() const {
-        return find_lines && wanted.has(LineType::self_occlusion) && !balls_only;
-    }
-    /// Whether lines are needed for more than their ink.
-    bool keeps_segments() const {
-        return mends_lines() || pipeline.lines.segments || pipeline.lines.drawing != nullptr ||
-               (pipeline.aovs && pipeline.aovs->wants_line_planes());
-    }
-    bool wants_faces() const { return find_lines && has_meshes && wanted.has(LineType::mesh); }
-
-    /// Whether both sides of a line belong to one whole, where that makes a difference.
-    bool is_inner(const Segment& segment) const;
-    /// How far back in the scene lies what a point of the screen sees at distance t, in [0, 1].
-    float depth_at(Vec2f point, float t) const;
-    /// Whether lines get fainter or thinner the farther back they lie.
-    bool cues_depth() const;
-    /// Makes a line so.
-    void apply_distance(Segment& segment) const;
-
-    const Pipeline& pipeline;
-    int q;  ///< lattice points along a pixel's side
-    Surfaces surfaces;
-    bool draw_lines;  ///< on the film
-    bool find_lines;  ///< for the film, or as data
-    bool has_meshes;
-    bool tones;           ///< divide geometries into light and shade, as data
-    bool smooth_shading;  ///< blend the colours of pixels that a line cuts
-    /// Every geometry is one ball, on which there are no lines.
-    bool balls_only;
-    DetectSettings detect;
-    LocateSettings locate;
-    LineTypes wanted;
-    bool styles_by_object;
-    bool tells_inner;  ///< lines within one whole have styles of their own
-    int style_levels;  ///< levels with styles of their own, and those beyond: 1 if all are alike
-    /// Styles by type, object after object where they have styles of their own, and all that level
-    /// after level likewise; then, if they are told apart, all that for lines within one whole.
-    InkSettings ink;
-    float halo_px;
-    std::size_t halo_style = 0;  ///< of the paper that halos show, if there are any
-    float depth_range;           ///< of the scene as the camera sees it, scene units
-    /// Empty, for the tiles' workers to start from.
-    LineDensity no_lines;
-    Viewpoint viewpoint;
-    int margin;  ///< pixels searched beyond the film's edge, for lines that reach in
-    std::vector<Tile> search_tiles, draw_tiles;
-    /// The surfaces behind the nearest ones, layer by layer; empty unless hidden lines are wanted.
-    std::vector<std::unique_ptr<FrameTracer>> behind;
-};
 
 /// What the pass that finds lines leaves to the pass that draws them.
 struct FoundLines {

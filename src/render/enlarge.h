@@ -7,7 +7,7 @@
 #include "base/image.h"
 #include "base/vec.h"
 #include "film/film.h"
-#include "render/edges_method.h"
+#include "render/edges.h"
 #include "render/tiles.h"
 
 namespace ink {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "lines/segment.h"
-#include "render/edges_method.h"
+#include "render/edges.h"
 #include "render/line_finder.h"
 #include "render/tiles.h"
 

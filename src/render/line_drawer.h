@@ -9,7 +9,7 @@
 #include "lines/density.h"
 #include "lines/ink.h"
 #include "lines/line_planes.h"
-#include "render/edges_method.h"
+#include "render/edges.h"
 #include "render/face_edges.h"
 #include "render/tiles.h"
 

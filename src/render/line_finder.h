@@ -13,7 +13,7 @@
 #include "lines/locate.h"
 #include "lines/segment.h"
 #include "lines/tones.h"
-#include "render/edges_method.h"
+#include "render/edges.h"
 #include "render/face_map.h"
 #include "render/ridge_search.h"
 #include "render/specular_search.h"

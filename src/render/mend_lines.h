@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "render/edges_method.h"
+#include "render/edges.h"
 
 namespace ink {
 

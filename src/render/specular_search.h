@@ -10,7 +10,7 @@
 #include "lines/detect.h"
 #include "lines/locate.h"
 #include "lines/segment.h"
-#include "render/edges_method.h"
+#include "render/edges.h"
 #include "render/path_table.h"
 #include "render/specular_paths.h"
 #include "sampling/sampler.h"
