@@ -314,11 +314,11 @@ std::vector<Setting> make_table() {
          "in "
          "line widths; half as wide as others unless --line hidden:... says so",
          [](S& s, Text t) { s.hidden = read_hidden(t); },
-         [](const S& s) { return print(s.hidden); }},
+         [](const S& s) { return print(s.hidden); }, false, any_text({"none", "solid", "dashed"})},
         {"hidden-layers", "Lines", "N",
          "Hidden lines: how many surfaces behind the first one are looked at",
          [](S& s, Text t) { s.hidden_layers = read_int(t, 1, 64); },
-         [](const S& s) { return fmt::format("{}", s.hidden_layers); }},
+         [](const S& s) { return fmt::format("{}", s.hidden_layers); }, false, whole(1, 64)},
         {"ids", "Lines", "LEVEL",
          "Between what lines run: primitive (atoms, particles, triangles), part (chains, groups), "
          "part:chain, part:residue, part:entity, part:element, part:FIELD or object; by default "
