@@ -303,14 +303,18 @@ void estimate_rows(const DerivativeRows& rows, const Lanes<std::int32_t>& on_sur
 /// Ridge estimates at the points of a grid inside its apron, and the lines through its cells.
 class RidgeField {
   public:
-    RidgeField(const SampleGrid& grid, int apron, int radius, const RidgeSettings& settings)
+    RidgeField(const SampleGrid& grid, int apron, const RidgePattern& pattern,
+               const RidgeSettings& settings)
         : grid_(grid),
           apron_(apron),
           settings_(settings),
           columns_(grid.width - 2 * apron),
           rows_(grid.height - 2 * apron) {
         if (columns_ <= 0 || rows_ <= 0) return;
-        pair_up(radius);
+        for (const RidgePattern::Pair& pair : pattern.pairs) {
+            const auto down = static_cast<std::ptrdiff_t>(pair.step.j);
+            pairs_.push_back({down * grid_.width + pair.step.i, pair.weights});
+        }
         // Rows of sixteen may end beyond the last one.
         const std::size_t size = index(0, rows_) + kLanes;
         for (auto* plane : {&slope_, &along_x_, &along_y_, &strength_}) plane->resize(size);
@@ -334,22 +338,6 @@ class RidgeField {
     std::size_t index(int i, int j) const {
         return static_cast<std::size_t>(j) * static_cast<std::size_t>(columns_) +
                static_cast<std::size_t>(i);
-    }
-
-    void pair_up(int radius) {
-        const std::vector<LatticeStep> steps = ridge_neighbourhood(radius);
-        std::vector<Vec2f> points;
-        for (const LatticeStep& step : steps) {
-            points.push_back({static_cast<float>(step.i) * grid_.spacing,
-                              static_cast<float>(step.j) * grid_.spacing});
-        }
-        const RidgeEstimator estimator(points, settings_);
-        for (std::size_t k = 0; k < steps.size(); ++k) {
-            const bool first_of_pair = steps[k].j > 0 || (steps[k].j == 0 && steps[k].i > 0);
-            if (!first_of_pair) continue;
-            pairs_.push_back({static_cast<std::ptrdiff_t>(steps[k].j) * grid_.width + steps[k].i,
-                              estimator.weights()[k]});
-        }
     }
 
     void estimate(int i, int j) {
@@ -422,9 +410,23 @@ class RidgeField {
 
 }  // namespace
 
-void find_ridges(const SampleGrid& grid, int apron, int radius, const RidgeSettings& settings,
-                 std::vector<Segment>& segments) {
-    RidgeField(grid, apron, radius, settings).connect(segments);
+RidgePattern::RidgePattern(int radius, float spacing) {
+    const std::vector<LatticeStep> steps = ridge_neighbourhood(radius);
+    std::vector<Vec2f> points;
+    for (const LatticeStep& step : steps) {
+        points.push_back(
+            {static_cast<float>(step.i) * spacing, static_cast<float>(step.j) * spacing});
+    }
+    const RidgeEstimator estimator(points, {});
+    for (std::size_t k = 0; k < steps.size(); ++k) {
+        const bool first_of_pair = steps[k].j > 0 || (steps[k].j == 0 && steps[k].i > 0);
+        if (first_of_pair) pairs.push_back({steps[k], estimator.weights()[k]});
+    }
+}
+
+void find_ridges(const SampleGrid& grid, int apron, const RidgePattern& pattern,
+                 const RidgeSettings& settings, std::vector<Segment>& segments) {
+    RidgeField(grid, apron, pattern, settings).connect(segments);
 }
 
 }  // namespace ink

@@ -66,9 +66,22 @@ struct LatticeStep {
 };
 std::vector<LatticeStep> ridge_neighbourhood(int radius);
 
+/// With which weights the normals of a neighbourhood go into the derivatives at its middle: the
+/// same at all points of a lattice of this spacing (pixels).
+struct RidgePattern {
+    RidgePattern(int radius, float spacing);
+
+    /// Two points opposite each other, by one of them.
+    struct Pair {
+        LatticeStep step;
+        std::array<float, RidgeEstimator::kDerivatives> weights;
+    };
+    std::vector<Pair> pairs;
+};
+
 /// The ridges in a grid of samples, as segments of type ridge in its cells, `apron` points of which
-/// on every side are not looked into: they must be at least the neighbourhood's radius.
-void find_ridges(const SampleGrid& grid, int apron, int radius, const RidgeSettings& settings,
-                 std::vector<Segment>& segments);
+/// on every side are not looked into: they must be at least the pattern's radius.
+void find_ridges(const SampleGrid& grid, int apron, const RidgePattern& pattern,
+                 const RidgeSettings& settings, std::vector<Segment>& segments);
 
 }  // namespace ink

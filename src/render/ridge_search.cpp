@@ -20,6 +20,7 @@ RidgeSearch::RidgeSearch(const Pipeline& pipeline, int per_pixel)
       radius_(std::clamp(
           static_cast<int>(std::lround(pipeline.settings.ridge_scale_px() * per_pixel)), 2, 64)),
       apron_((radius_ + kBlockSide - 1) / kBlockSide * kBlockSide),
+      pattern_(radius_, 1.0F / static_cast<float>(per_pixel)),
       sampler_(*pipeline.frame, pipeline.camera, per_pixel) {
     const auto& objects = pipeline.scene.objects();
     for (std::uint32_t k = 0; k < objects.size(); ++k) {
@@ -30,7 +31,7 @@ RidgeSearch::RidgeSearch(const Pipeline& pipeline, int per_pixel)
 
 void RidgeSearch::search(const Tile& tile, std::vector<Segment>& segments) {
     trace(tile);
-    find_ridges(grid_, apron_, radius_, ridge_settings(pipeline_.settings), segments);
+    find_ridges(grid_, apron_, pattern_, ridge_settings(pipeline_.settings), segments);
 }
 
 void RidgeSearch::trace(const Tile& tile) {

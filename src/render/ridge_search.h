@@ -32,8 +32,9 @@ class RidgeSearch {
 
     const Pipeline& pipeline_;
     int per_pixel_;
-    int radius_;               ///< of a ridge's neighbourhood, lattice points
-    int apron_;                ///< the same, up to whole blocks
+    int radius_;  ///< of a ridge's neighbourhood, lattice points
+    int apron_;   ///< the same, up to whole blocks
+    RidgePattern pattern_;
     std::vector<bool> balls_;  ///< objects without ridges: each ID is a ball
     Sampler sampler_;
     SampleGrid grid_;
