@@ -406,6 +406,19 @@ TEST(Picture, AtTwiceTheResolutionShowsTheSameLines) {
     }
 }
 
+TEST(Picture, Of2048PixelsShowsTheLinesOf1024) {
+    const Scene scene = acetaminophen();
+    Settings settings;
+    settings.size = {1024, 1024};
+    settings.line_width = {0.3, Length::Unit::percent};
+    settings.aovs = {Aov::lines};
+    const Film small = draw(scene, settings);
+    settings.size = {2048, 2048};
+    const Film large = draw(scene, settings);
+    EXPECT_LT(mean_difference(plane(small, "line.A"), halved(plane(large, "line.A"), small.size())),
+              0.001);
+}
+
 TEST(Picture, OfLocatedLinesHasTheSameLinesOnAnyLattice) {
     const Scene scene = acetaminophen();
     Settings settings;
