@@ -208,7 +208,7 @@ void write_csv(const std::string& file, const std::vector<Particle>& particles) 
 }  // namespace
 
 int main(int argc, char** argv) {
-    if (argc < 2) {
+    if (argc < 2 || argv[1][0] == '-') {
         std::fprintf(stderr, "usage: mpm_collision OUT.csv [TIME]\n");
         return 2;
     }
