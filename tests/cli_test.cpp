@@ -590,11 +590,39 @@ TEST_F(CommandLine, AnimationDrawsAPictureAFrame) {
     };
     expect_done(draw({"render", "run.xyz", "--frame", "1:", "-o", "out_##.png"}));
     EXPECT_EQ(files(), (std::set<std::string>{"out_01.png", "out_02.png", "run.xyz"}));
-    // The camera stays where the first frame put it.
+    // The camera stays.
     EXPECT_NE(read_bytes(file("out_01.png")), read_bytes(file("out_02.png")));
     const Outcome outcome = draw({"render", "run.xyz", "--frame", "1:7", "-o", "b#.png"});
     EXPECT_EQ(outcome.status, 1);
     expect_says(outcome.err, {"--frame 1:7", "3 frames, 0 to 2"});
+}
+
+/// Columns of a square RGBA picture that are not all white.
+std::vector<int> inked_columns(const std::vector<std::uint8_t>& rgba, int side) {
+    std::vector<int> columns;
+    for (int x = 0; x < side; ++x) {
+        bool inked = false;
+        for (int y = 0; y < side; ++y) {
+            const auto at = static_cast<std::size_t>(4 * (y * side + x));
+            inked |= rgba[at] < 250 || rgba[at + 1] < 250 || rgba[at + 2] < 250;
+        }
+        if (inked) columns.push_back(x);
+    }
+    return columns;
+}
+
+TEST_F(CommandLine, AnimationHasRoomForEveryFrame) {
+    folder_.write("run.xyz", "1\n\nC 0 0 0\n1\n\nC 9 0 0\n1\n\nC 18 0 0\n");
+    expect_done(run({"render", "run.xyz", "--frame", "0:", "-o", "#.png", "--size", "40x40",
+                     "--view", "front", "--compose", "shaded", "--quiet"}));
+    int last = 0;  // column that the frame before ends at
+    for (const char* name : {"0.png", "1.png", "2.png"}) {
+        const std::vector<int> columns = inked_columns(pixels(file(name)), 40);
+        ASSERT_FALSE(columns.empty()) << name;
+        EXPECT_GT(columns.front(), last) << name;
+        last = columns.back();
+    }
+    EXPECT_LT(last, 39);
 }
 
 TEST_F(CommandLine, AnimationLeavesFinishedPicturesWhenItResumes) {

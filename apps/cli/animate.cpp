@@ -17,7 +17,7 @@ namespace inktrace::cli {
 
 namespace {
 
-/// Renders shot after shot by the camera of the first; a scene stays as long as its frame does.
+/// Renders shot after shot by one camera; a scene stays as long as its frame does.
 class Animation {
   public:
     explicit Animation(const RenderArguments& arguments)
@@ -32,7 +32,7 @@ class Animation {
         const FrameRange range = frame_range(settings_, count);
         shots_ = plan_shots(arguments_.output, range, arguments_.turntable);
         if (range.last > range.first) keep_colors(range);
-        camera_ = renderer_->with_camera(settings_);
+        choose_camera(range);
         {
             ProgressBar bar(!arguments_.quiet);
             for (std::size_t k = 0; k < shots_.size(); ++k) draw(k, bar);
@@ -64,6 +64,7 @@ class Animation {
         if (loaded.chosen_radius && arguments_.inputs.size() == 1) {
             settings_.set("radius", fmt::format("{}", *loaded.chosen_radius));
         }
+        primitives_ = loaded.scene.primitive_count();
         renderer_.emplace(std::move(loaded.scene));
         frame_ = frame;
         stale_ = false;
@@ -91,6 +92,30 @@ class Animation {
         if (!values || !(values->first < values->second)) return;
         settings_.set("color-range", fmt::format("{}:{}", values->first, values->second));
         stale_ = true;
+    }
+
+    /// A camera that stays, and that the whole run fits into the view of: chosen for some of the
+    /// frames drawn together, the first and the last among them.
+    void choose_camera(FrameRange range) {
+        constexpr std::size_t kMostFrames = 16;
+        constexpr std::size_t kMostPrimitives = 8'000'000;
+        const std::size_t frames = static_cast<std::size_t>(range.last - range.first) + 1;
+        const bool automatic = settings_.get("eye").empty();
+        if (frames == 1 || !automatic) {
+            camera_ = renderer_->with_camera(settings_);
+            return;
+        }
+        const std::size_t most = std::clamp<std::size_t>(
+            kMostPrimitives / std::max<std::size_t>(primitives_, 1), 2, kMostFrames);
+        const std::size_t count = std::min(frames, most);
+        Scene all;
+        for (std::size_t k = 0; k < count; ++k) {
+            const std::size_t frame = (frames - 1) * k / (count - 1);
+            Settings settings = settings_;
+            settings.set("frame", std::to_string(range.first + static_cast<int>(frame)));
+            for (const std::string& input : arguments_.inputs) all.load(input, settings);
+        }
+        camera_ = Renderer(std::move(all)).with_camera(settings_);
     }
 
     void draw(std::size_t index, ProgressBar& bar) {
@@ -122,8 +147,9 @@ class Animation {
     std::optional<Movie> movie_;
     std::vector<Shot> shots_;
     std::optional<Renderer> renderer_;
-    int frame_ = 0;       ///< of the renderer
-    bool stale_ = false;  ///< the renderer was made by other settings
+    std::size_t primitives_ = 0;  ///< in a frame
+    int frame_ = 0;               ///< of the renderer
+    bool stale_ = false;          ///< the renderer was made by other settings
     std::optional<Settings> camera_;
     std::size_t left_ = 0;
 };
