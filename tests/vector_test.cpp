@@ -179,6 +179,17 @@ TEST(Regions, ShareTheCurvesOfTheLinesAroundThem) {
     }
 }
 
+TEST(Regions, HaveTheirOwnColorAndNoneOfWhatLiesAround) {
+    Settings settings = picture(48);
+    settings.shading.mode = ShadeMode::flat;
+    settings.shading.background = {255, 0, 255};
+    Object ball = sphere_object({{{0, 0, 0}, 1.0F}});
+    ball.material.color = {250, 20, 20};
+    const LineArt art = draw(Scene({ball}), settings).art;
+    ASSERT_EQ(art.regions.size(), 1U);
+    EXPECT_EQ(art.regions[0].color, ball.material.color);
+}
+
 TEST(Regions, GoOnAlongTheBorderOfThePicture) {
     // A sphere much larger than the picture, and a small one in front of it.
     Settings settings = picture(64);

@@ -13,14 +13,23 @@ namespace ink {
 
 namespace {
 
+/// Pixels [x0, x1) of a row.
+struct Run {
+    int y;
+    int x0;
+    int x1;
+};
+
 /// The pixels whose centres a region covers, row by row.
 class RegionPixels {
   public:
     explicit RegionPixels(Size size) : size_(size) {}
 
-    /// Calls `visit(y, x0, x1)` for runs of pixels [x0, x1).
-    template <class Visit>
-    void for_runs(const Region& region, const Visit& visit);
+    void cover(const Region& region);
+    /// By rows, then columns.
+    std::span<const Run> runs() const { return runs_; }
+    /// Those with eight neighbours that are covered as well, on which no other region has a share.
+    std::vector<Run> inner_runs() const;
 
   private:
     void add_edge(Vec2d a, Vec2d b);
@@ -32,6 +41,7 @@ class RegionPixels {
     };
     Size size_;
     std::vector<Hit> hits_;  ///< where outlines cross the middle of a row
+    std::vector<Run> runs_;
 };
 
 void RegionPixels::add_edge(Vec2d a, Vec2d b) {
@@ -64,9 +74,9 @@ void RegionPixels::add_outline(const Curve& outline) {
     }
 }
 
-template <class Visit>
-void RegionPixels::for_runs(const Region& region, const Visit& visit) {
+void RegionPixels::cover(const Region& region) {
     hits_.clear();
+    runs_.clear();
     for (const Curve& outline : region.outlines) add_outline(outline);
     std::ranges::sort(
         hits_, [](const Hit& a, const Hit& b) { return a.y != b.y ? a.y < b.y : a.x < b.x; });
@@ -76,8 +86,24 @@ void RegionPixels::for_runs(const Region& region, const Visit& visit) {
         };
         const int first = column(hits_[k].x);
         const int last = std::min(column(hits_[k + 1].x), size_.width);
-        if (hits_[k].y == hits_[k + 1].y && first < last) visit(hits_[k].y, first, last);
+        if (hits_[k].y == hits_[k + 1].y && first < last)
+            runs_.push_back({hits_[k].y, first, last});
     }
+}
+
+std::vector<Run> RegionPixels::inner_runs() const {
+    const auto row = [&](int y) { return std::ranges::equal_range(runs_, y, {}, &Run::y); };
+    std::vector<Run> inner;
+    for (const Run& run : runs_) {
+        for (const Run& above : row(run.y - 1)) {
+            for (const Run& below : row(run.y + 1)) {
+                const int x0 = std::max({run.x0, above.x0, below.x0}) + 1;
+                const int x1 = std::min({run.x1, above.x1, below.x1}) - 1;
+                if (x0 < x1) inner.push_back({run.y, x0, x1});
+            }
+        }
+    }
+    return inner;
 }
 
 std::array<float, 256> decoding_table() {
@@ -129,9 +155,14 @@ void color_regions(std::span<Region> regions, const DisplayImage& image, int thr
             for (std::size_t k = group * kGrain; k < end; ++k) {
                 Region& region = regions[k];
                 MeanColor mean{kDecode};
-                pixels.for_runs(region, [&](int y, int x0, int x1) {
-                    for (int x = x0; x < x1; ++x) mean.add(pixel(x, y));
-                });
+                const auto add = [&](std::span<const Run> runs) {
+                    for (const Run& run : runs) {
+                        for (int x = run.x0; x < run.x1; ++x) mean.add(pixel(x, run.y));
+                    }
+                };
+                pixels.cover(region);
+                add(pixels.inner_runs());
+                if (mean.weight == 0.0) add(pixels.runs());
                 if (mean.weight == 0.0 && !region.outlines.empty()) {
                     const Vec2f at = region.outlines.front().start;
                     mean.add(pixel(std::clamp(static_cast<int>(at.x), 0, image.size.width - 1),
