@@ -121,6 +121,16 @@ TEST(Representation, MakesPartsOfAnyLevel) {
     EXPECT_THROW(represent(m, {.parts = "shoe"}), Error);
 }
 
+TEST(Representation, ColoursByChainWhereAtomsAreMany) {
+    Molecule m = small_complex();
+    m.copies.resize(1500);  // 10,500 atoms
+    EXPECT_EQ(spheres(represent(m, {})).colors[0], category_color(0));
+    EXPECT_EQ(spheres(represent(m, {.color_by = "element"})).colors[0], element(7).color);
+    m.chains.resize(1);
+    for (Residue& residue : m.residue_table) residue.chain = 0;
+    EXPECT_EQ(spheres(represent(m, {})).colors[0], element(7).color);
+}
+
 TEST(Representation, ColoursByHierarchyAndByField) {
     const Molecule m = small_complex();
     const auto colors = [&](const DataSettings& settings) {

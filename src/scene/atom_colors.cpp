@@ -93,7 +93,7 @@ Kinds residue_kinds(const Molecule& m) {
 
 /// The kinds of a word of `--color-by`; nothing where it is another.
 std::optional<Kinds> find_kinds(const Molecule& m, const std::string& word) {
-    if (word.empty() || word == "element") return element_kinds(m);
+    if (word == "element") return element_kinds(m);
     if (m.residues.empty()) return std::nullopt;
     if (word == "chain" || word == "chain-hetero") {
         return Kinds{"chain", with_colors(m.chains),
@@ -131,8 +131,16 @@ Coloring color_kinds(const Molecule& molecule, const Kinds& kinds) {
 
 }  // namespace
 
+std::string_view usual_coloring(const Molecule& molecule) {
+    constexpr std::size_t kMostInElements = 10'000;
+    const std::size_t drawn =
+        molecule.atom_count() * std::max<std::size_t>(molecule.copies.size(), 1);
+    return drawn > kMostInElements && molecule.chains.size() > 1 ? "chain" : "element";
+}
+
 Coloring color_atoms(const Molecule& molecule, const DataSettings& settings) {
-    const std::string& word = settings.color_by;
+    const std::string word =
+        settings.color_by.empty() ? std::string(usual_coloring(molecule)) : settings.color_by;
     if (word == "none") return {};
     if (const auto uniform = parse_color(word)) {
         return {std::vector<Rgb8>(molecule.atom_count(), *uniform), std::nullopt};

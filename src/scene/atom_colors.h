@@ -10,8 +10,11 @@
 
 namespace ink {
 
-/// Colours of the atoms by `color_by`: their elements' unless it says otherwise. Throws Error where
-/// it names what the molecule does not have.
+/// What atoms are coloured by unless told: "element", or "chain" where there are so many of them
+/// that single ones are too small to mean much.
+std::string_view usual_coloring(const Molecule& molecule);
+
+/// Colours of the atoms by `color_by`. Throws Error where it names what the molecule does not have.
 Coloring color_atoms(const Molecule& molecule, const DataSettings& settings);
 
 /// A number an atom; "radius" is that of the file. Empty where there is no such field.

@@ -58,7 +58,7 @@ struct DataSettings {
     std::string glyph_field = {};  ///< the tensor or orientation of glyphs; empty: by its name
 
     std::string color_by =
-        {};  ///< "element", "chain", ... or a field; empty: the file's, else elements
+        {};  ///< "element", "chain", ... or a field; empty: the file's, else usual_coloring
     const ColorMap* color_map = &color_maps().front();
     std::optional<std::pair<double, double>> color_range = {};  ///< of a field; default: all of it
 

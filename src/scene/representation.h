@@ -12,8 +12,8 @@ namespace ink {
 
 /// The molecule as objects to draw: spheres, sticks, or both. `select`, `assembly` and `clip` have
 /// been applied already.
-/// Parts are chains unless `parts` says otherwise; colours are the elements' unless `color_by`
-/// does. Throws Error where the settings name what the molecule does not have.
+/// Parts are chains unless `parts` says otherwise; colours are those of `color_atoms`. Throws Error
+/// where the settings name what the molecule does not have.
 std::vector<Object> represent(const Molecule& molecule, const DataSettings& settings);
 
 /// The number that the text of `--radius` is, if it is one. Throws UsageError unless it is positive
