@@ -15,6 +15,7 @@ Reader xyz_reader();     ///< xyz_reader.cpp
 Reader table_reader();   ///< table_reader.cpp: CSV, TSV, columns between blanks
 Reader lammps_reader();  ///< lammps_reader.cpp
 Reader vtk_reader();     ///< vtk_reader.cpp: VTP and VTU
+Reader bgeo_reader();    ///< bgeo_reader.cpp: Houdini's classic geometry
 Reader obj_reader();     ///< obj_reader.cpp
 Reader ply_reader();     ///< ply_reader.cpp
 Reader stl_reader();     ///< stl_reader.cpp

@@ -17,10 +17,10 @@
 namespace ink {
 
 std::span<const Reader> readers() {
-    static const std::array kReaders{pdb_reader(),    cif_reader(), sdf_reader(), mol2_reader(),
-                                     xyz_reader(),    gro_reader(), pqr_reader(), table_reader(),
-                                     lammps_reader(), vtk_reader(), obj_reader(), ply_reader(),
-                                     stl_reader(),    off_reader(), gltf_reader()};
+    static const std::array kReaders{pdb_reader(),    cif_reader(), sdf_reader(),  mol2_reader(),
+                                     xyz_reader(),    gro_reader(), pqr_reader(),  table_reader(),
+                                     lammps_reader(), vtk_reader(), bgeo_reader(), obj_reader(),
+                                     ply_reader(),    stl_reader(), off_reader(),  gltf_reader()};
     return kReaders;
 }
 

@@ -1,5 +1,6 @@
 // Writes a small valid file of every format: make_seeds FOLDER makes FOLDER/pdb/a.pdb and so on.
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cstdint>
@@ -40,6 +41,29 @@ std::string raw_vtp() {
     text +=
         raw(std::uint32_t{4}) + raw(1.F) + raw(std::uint32_t{12}) + raw(0.F) + raw(1.F) + raw(2.F);
     return text + "</AppendedData></VTKFile>";
+}
+
+/// A number with its most significant byte first.
+template <class T>
+std::string big_endian(T value) {
+    std::string bytes = raw(value);
+    if constexpr (std::endian::native == std::endian::little) std::ranges::reverse(bytes);
+    return bytes;
+}
+
+std::string bgeo() {
+    std::string bytes("BgeoV");
+    for (const std::int32_t count : {5, 1, 0, 0, 0, 2, 0, 0, 0}) bytes += big_endian(count);
+    const auto begin_attribute = [&](std::string_view name, std::int16_t size, std::int32_t type) {
+        bytes += big_endian(static_cast<std::int16_t>(name.size())) + std::string(name);
+        bytes += big_endian(size) + big_endian(type);
+    };
+    begin_attribute("Cd", 3, 0);
+    for (int k = 0; k < 3; ++k) bytes += big_endian(1.F);
+    begin_attribute("s", 1, 4);
+    bytes += big_endian(std::int32_t{1}) + big_endian(std::int16_t{1}) + "a";
+    for (const float x : {1.F, 2.F, 3.F, 1.F, 0.5F, 0.25F, 0.F}) bytes += big_endian(x);
+    return bytes + big_endian(std::int32_t{0});
 }
 
 std::string glb() {
@@ -125,6 +149,7 @@ int main(int argc, char** argv) {
              "</DataArray><DataArray type=\"UInt8\" Name=\"types\" format=\"ascii\">5 8 "
              "9</DataArray>"
              "</Cells></Piece></UnstructuredGrid></VTKFile>"},
+        Seed{"bgeo", bgeo()},
         Seed{"obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvn 0 0 1\ng a\nf 1//1 2//1 3//1 -1//1\n"},
         Seed{"off", "COFF\n3 1 0\n0 0 0 1 0 0\n1 0 0 0 1 0\n0 1 0 0 0 1\n3 0 1 2\n"},
         Seed{"glb", glb()},
