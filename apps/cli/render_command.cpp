@@ -150,7 +150,8 @@ void run(const RenderArguments& arguments) {
 /// "1crn.png" in the working folder for "molecules/1crn.pdb.gz". Throws Error (usage) where there
 /// is such a file: it may be no picture of ours.
 std::string default_output(const std::filesystem::path& input) {
-    std::filesystem::path name = input.filename();
+    std::filesystem::path name =
+        input.has_filename() ? input.filename() : input.parent_path().filename();
     if (name.extension() == ".gz") name.replace_extension();
     name.replace_extension(".png");
     std::error_code failure;

@@ -19,6 +19,8 @@ namespace {
 constexpr std::size_t kChunk = std::size_t{1} << 20;
 /// At most so much is asked of zlib at once. More than twice its buffer goes straight to its place.
 constexpr std::size_t kMostAtOnce = std::size_t{1} << 28;
+/// What is made of a text takes about as much again; what is less is left to luck.
+constexpr double kShareOfText = 1.5;
 
 struct GzClose {
     void operator()(gzFile handle) const { gzclose(handle); }
@@ -48,22 +50,6 @@ GzHandle open(const std::filesystem::path& file) {
                                  reason.substr(reason.rfind(": ") + 1)));
 }
 
-/// What is made of a text takes about as much again; what is less is left to luck.
-constexpr double kShareOfText = 1.5;
-
-/// Memory is granted before it is there: a file that is too large would get the program killed on
-/// the way.
-void check_memory(const std::filesystem::path& file, std::size_t bytes) {
-    constexpr std::size_t kSmall = std::size_t{64} << 20;
-    if (bytes < kSmall) return;
-    const double needed = kShareOfText * static_cast<double>(bytes);
-    const double free = free_memory_bytes();
-    if (needed <= free) return;
-    throw InputError(file, fmt::format("needs at least {:.2g} GB of memory to be read, but {:.2g} "
-                                       "GB are free; split it, or use a larger machine",
-                                       needed * 1e-9, free * 1e-9));
-}
-
 /// Room for a file of this many bytes on disk and one more, to notice its end.
 std::size_t first_capacity(const std::filesystem::path& file, std::size_t limit) {
     std::error_code error;
@@ -75,6 +61,17 @@ std::size_t first_capacity(const std::filesystem::path& file, std::size_t limit)
 }
 
 }  // namespace
+
+void check_memory(const std::filesystem::path& file, std::size_t bytes) {
+    constexpr std::size_t kSmall = std::size_t{64} << 20;
+    if (bytes < kSmall) return;
+    const double needed = kShareOfText * static_cast<double>(bytes);
+    const double free = free_memory_bytes();
+    if (needed <= free) return;
+    throw InputError(file, fmt::format("needs at least {:.2g} GB of memory to be read, but {:.2g} "
+                                       "GB are free; split it, or use a larger machine",
+                                       needed * 1e-9, free * 1e-9));
+}
 
 std::string read_text(const std::filesystem::path& file, std::size_t limit) {
     const GzHandle handle = open(file);

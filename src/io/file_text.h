@@ -14,6 +14,10 @@ inline constexpr std::size_t kLargestText = std::size_t{4} << 30;
 /// where it cannot be read, is damaged, or would be larger than `limit`.
 std::string read_text(const std::filesystem::path& file, std::size_t limit = kLargestText);
 
+/// Memory is granted before it is there: what is too large would get the program killed on the way.
+/// Throws InputError where this many bytes of a file, and what is made of them, do not fit.
+void check_memory(const std::filesystem::path& file, std::size_t bytes);
+
 /// Walks over the lines of a text, which must outlive it.
 class LineCursor {
   public:

@@ -16,6 +16,7 @@ Reader table_reader();   ///< table_reader.cpp: CSV, TSV, columns between blanks
 Reader lammps_reader();  ///< lammps_reader.cpp
 Reader vtk_reader();     ///< vtk_reader.cpp: VTP and VTU
 Reader bgeo_reader();    ///< bgeo_reader.cpp: Houdini's classic geometry
+Reader uda_reader();     ///< uda_reader.cpp: archives of Uintah's, each a folder
 Reader obj_reader();     ///< obj_reader.cpp
 Reader ply_reader();     ///< ply_reader.cpp
 Reader stl_reader();     ///< stl_reader.cpp

@@ -17,10 +17,10 @@
 namespace ink {
 
 std::span<const Reader> readers() {
-    static const std::array kReaders{pdb_reader(),    cif_reader(), sdf_reader(),  mol2_reader(),
-                                     xyz_reader(),    gro_reader(), pqr_reader(),  table_reader(),
-                                     lammps_reader(), vtk_reader(), bgeo_reader(), obj_reader(),
-                                     ply_reader(),    stl_reader(), off_reader(),  gltf_reader()};
+    static const std::array kReaders{
+        pdb_reader(), cif_reader(),   sdf_reader(),    mol2_reader(), xyz_reader(),  gro_reader(),
+        pqr_reader(), table_reader(), lammps_reader(), vtk_reader(),  bgeo_reader(), uda_reader(),
+        obj_reader(), ply_reader(),   stl_reader(),    off_reader(),  gltf_reader()};
     return kReaders;
 }
 
@@ -42,14 +42,24 @@ std::string known_extensions() {
     return fmt::format(".{}", fmt::join(all, ", ."));
 }
 
-void check_readable(const std::filesystem::path& file) {
+const Reader* find_reader(const std::string& extension) {
+    for (const Reader& reader : readers()) {
+        if (std::ranges::find(reader.extensions, extension) != reader.extensions.end()) {
+            return &reader;
+        }
+    }
+    return nullptr;
+}
+
+void check_readable(const std::filesystem::path& file, bool wants_folder) {
     std::error_code error;
     const auto status = std::filesystem::status(file, error);
     if (!std::filesystem::exists(status)) {
         throw InputError(file, "no such file; check the path");
     }
-    if (std::filesystem::is_directory(status)) {
-        throw InputError(file, "is a directory; name a file in it");
+    if (std::filesystem::is_directory(status) != wants_folder) {
+        throw InputError(file, wants_folder ? "is not a directory; name the folder of the archive"
+                                            : "is a directory; name a file in it");
     }
     if (std::filesystem::is_regular_file(status) && std::filesystem::file_size(file, error) == 0) {
         throw InputError(file, "is empty (0 bytes); was it written to the end?");
@@ -141,13 +151,16 @@ FileContents read_series(const std::filesystem::path& pattern, const ReadOptions
 
 FileContents read_file(const std::filesystem::path& file, const ReadOptions& options) {
     if (is_series(file)) return read_series(file, options);
-    check_readable(file);
-    const std::string extension = format_extension(file);
-    for (const Reader& reader : readers()) {
-        if (std::ranges::find(reader.extensions, extension) != reader.extensions.end()) {
-            return read_with(reader, file, options);
-        }
+    // "run.uda/", as shells complete the name of a folder.
+    if (!file.has_filename() && file.has_relative_path()) {
+        std::error_code error;
+        if (std::filesystem::is_directory(file, error))
+            return read_file(file.parent_path(), options);
     }
+    const std::string extension = format_extension(file);
+    const Reader* const reader = find_reader(extension);
+    check_readable(file, reader != nullptr && reader->is_folder);
+    if (reader != nullptr) return read_with(*reader, file, options);
     throw InputError(file, fmt::format("cannot tell the format from '{}'; expected one of {}",
                                        extension.empty() ? "no extension" : "." + extension,
                                        known_extensions()));

@@ -40,6 +40,7 @@ struct Reader {
     /// Throws InputError with place, problem and remedy. Every coordinate that it returns is
     /// finite, every index in range, every radius positive.
     FileContents (*read)(const std::filesystem::path& file, const ReadOptions& options);
+    bool is_folder = false;  ///< what is read is a folder of files
 };
 
 /// All formats that can be read.

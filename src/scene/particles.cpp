@@ -41,7 +41,7 @@ std::vector<float> field_values(const Particles& particles, std::string_view fla
 }  // namespace
 
 bool is_radius_name(std::string_view name) {
-    return is_one_of(name, {"radius", "radii", "r", "rad", "pscale"});
+    return is_one_of(name, {"radius", "radii", "r", "rad", "pscale", "p.radius"});
 }
 bool is_diameter_name(std::string_view name) { return is_one_of(name, {"diameter", "diam", "d"}); }
 
