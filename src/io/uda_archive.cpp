@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <limits>
+#include <iterator>
 #include <pugixml.hpp>
 #include <string_view>
 #include <system_error>
