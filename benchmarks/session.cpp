@@ -5,16 +5,14 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <condition_variable>
 #include <cstdio>
 #include <deque>
 #include <functional>
 #include <memory>
-#include <mutex>
 #include <span>
 #include <stdexcept>
 
-#include "session/session.h"
+#include "session/waiting_owner.h"
 
 namespace ink::bench {
 
@@ -35,59 +33,22 @@ double quantile(std::vector<double> values, double share) {
     return values[static_cast<std::size_t>(std::ceil(share * last))];
 }
 
-/// A session with someone who waits for it.
-class Driver {
+/// What is done to a session by hand.
+class Driver : public inktrace::viewer::WaitingOwner {
   public:
-    Driver() : session([this] { wake(); }) {}
-
-    /// Takes in news until `done`.
     void wait_for(const std::function<bool()>& done) {
-        const auto end = Clock::now() + std::chrono::minutes(2);
-        for (;;) {
-            session.update();
-            if (done()) return;
-            if (session.message().is_error) throw std::runtime_error(session.message().text);
-            if (Clock::now() > end) throw std::runtime_error("the session has stopped");
-            std::unique_lock lock(mutex_);
-            news_.wait_for(lock, std::chrono::milliseconds(5), [this] { return woken_; });
-            woken_ = false;
+        const auto settled = [&] { return done() || session.message().is_error; };
+        if (!wait_until(settled, std::chrono::minutes(2))) {
+            throw std::runtime_error("the session has stopped");
         }
-    }
-    /// Takes in news for some time.
-    void wait(double ms) {
-        const auto start = Clock::now();
-        while (ms_since(start) < ms) {
-            std::unique_lock lock(mutex_);
-            const std::chrono::duration<double, std::milli> left(ms - ms_since(start));
-            news_.wait_for(lock, left, [this] { return woken_; });
-            woken_ = false;
-            lock.unlock();
-            session.update();
-        }
+        if (session.message().is_error) throw std::runtime_error(session.message().text);
     }
     void wait_for_picture() {
-        wait_for([this] {
-            return !session.busy() && session.painting().picture && session.painting().exact;
-        });
+        wait_for([this] { return has_picture(); });
     }
     void turn(double right_deg, double down_deg) {
         session.move_camera(session.camera().turned(right_deg, down_deg));
     }
-
-  private:
-    void wake() {
-        {
-            const std::scoped_lock lock(mutex_);
-            woken_ = true;
-        }
-        news_.notify_all();
-    }
-    std::mutex mutex_;
-    std::condition_variable news_;
-    bool woken_ = false;
-
-  public:
-    Session session;
 };
 
 inktrace::Renderer load(const std::filesystem::path& file, const inktrace::Settings& settings) {
@@ -134,7 +95,8 @@ class Turning {
             events.push_back({driver_.session.settings().get("eye"), Clock::now()});
             const auto next = Clock::now() + std::chrono::microseconds(int(kBetweenEvents * 1e3));
             while (Clock::now() < next) {
-                driver_.wait(std::min(1.0, kBetweenEvents));
+                driver_.wait(
+                    std::chrono::duration<double, std::milli>(std::min(1.0, kBetweenEvents)));
                 if (driver_.session.picture_number() == seen) continue;
                 seen = driver_.session.picture_number();
                 ++shown;

@@ -258,28 +258,22 @@ double ink(const Film& film, int x0, int x1) {
 /// Two balls alike, one at the front and one at the back of the scene.
 Scene near_and_far() { return Scene({sphere_object({{{-2, 0, 0}, 1}, {{2, 0, -8}, 1}})}); }
 
-TEST(Lines, FadeWithDistance) {
+/// The setting takes away a share of 0.6 of the ink, at the very back.
+void expect_less_ink_behind(std::string_view setting) {
     const Scene scene = near_and_far();
     Settings settings = plan_view(8, 128);
     settings.aovs = {Aov::lines};
     const PixelFormats formats{.display = true, .linear = true};
     const Film usual = draw(scene, settings, formats);
-    const Film faded = draw(scene, with(settings, "line-fade", "0.6"), formats);
+    const Film less = draw(scene, with(settings, setting, "0.6"), formats);
     // Outlines lie one unit behind a ball's foremost point, of ten that the scene is deep.
-    EXPECT_NEAR(ink(faded, 0, 64) / ink(usual, 0, 64), 1.0 - 0.6 * 0.1, 0.01);
-    EXPECT_NEAR(ink(faded, 64, 128) / ink(usual, 64, 128), 1.0 - 0.6 * 0.9, 0.01);
+    EXPECT_NEAR(ink(less, 0, 64) / ink(usual, 0, 64), 1.0 - 0.6 * 0.1, 0.01);
+    EXPECT_NEAR(ink(less, 64, 128) / ink(usual, 64, 128), 1.0 - 0.6 * 0.9, 0.01);
 }
 
-TEST(Lines, GetThinnerWithDistance) {
-    const Scene scene = near_and_far();
-    Settings settings = plan_view(8, 128);
-    settings.aovs = {Aov::lines};
-    const PixelFormats formats{.display = true, .linear = true};
-    const Film usual = draw(scene, settings, formats);
-    const Film thin = draw(scene, with(settings, "line-taper", "0.6"), formats);
-    EXPECT_NEAR(ink(thin, 0, 64) / ink(usual, 0, 64), 1.0 - 0.6 * 0.1, 0.01);
-    EXPECT_NEAR(ink(thin, 64, 128) / ink(usual, 64, 128), 1.0 - 0.6 * 0.9, 0.01);
-}
+TEST(Lines, FadeWithDistance) { expect_less_ink_behind("line-fade"); }
+
+TEST(Lines, GetThinnerWithDistance) { expect_less_ink_behind("line-taper"); }
 
 /// Two upright sheets of squares, one at the front and one at the back of the scene.
 Scene near_and_far_sheets() {

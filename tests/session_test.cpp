@@ -1,6 +1,6 @@
 // The viewer without its window: what it shows is what `inktrace render` writes.
 
-#include "session/session.h"
+#include "session/waiting_owner.h"
 
 #include <gtest/gtest.h>
 #include <png.h>
@@ -9,10 +9,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <condition_variable>
 #include <cstdlib>
 #include <functional>
-#include <mutex>
 #include <string>
 #include <thread>
 
@@ -38,49 +36,19 @@ constexpr std::string_view kFrames =
     "2\nsecond\nC 0 0 0\nO 0 2.2 0\n"
     "2\nthird\nC 0 0 0\nO 0 3.2 0\n";
 
-/// A session, and someone who waits for it.
-class Owner {
+class Owner : public WaitingOwner {
   public:
-    Owner() : session([this] { wake(); }) {}
-
-    /// Calls `update` at every piece of news until `done`; false if that takes a minute.
+    /// False if it takes a minute.
     bool wait_for(const std::function<bool()>& done) {
-        const auto end = Clock::now() + std::chrono::minutes(1);
-        for (;;) {
-            session.update();
-            if (done()) return true;
-            std::unique_lock lock(mutex_);
-            const auto soon = Clock::now() + std::chrono::milliseconds(20);
-            news_.wait_until(lock, soon, [this] { return woken_; });
-            woken_ = false;
-            if (Clock::now() > end) return false;
-        }
+        return wait_until(done, std::chrono::minutes(1));
     }
-    /// Until the picture of the present settings is there in full.
     bool wait_for_picture() {
-        return wait_for([this] {
-            return !session.busy() && session.painting().picture && session.painting().exact;
-        });
+        return wait_for([this] { return has_picture(); });
     }
     void open(const std::vector<fs::path>& files) {
         session.open(files);
         session.resize({120, 90});
     }
-
-  private:
-    void wake() {
-        {
-            const std::scoped_lock lock(mutex_);
-            woken_ = true;
-        }
-        news_.notify_all();
-    }
-    std::mutex mutex_;
-    std::condition_variable news_;
-    bool woken_ = false;
-
-  public:
-    Session session;
 };
 
 std::vector<std::uint8_t> bytes(const Picture& picture) {
