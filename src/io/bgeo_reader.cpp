@@ -4,17 +4,16 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
-#include <cstring>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
 #include "base/error.h"
+#include "io/byte_order.h"
 #include "io/file_text.h"
 #include "io/formats.h"
 #include "io/molecule_file.h"
@@ -34,10 +33,7 @@ constexpr std::size_t kWord = 4;  ///< bytes of a number
 
 template <class T>
 T big_endian(const char* bytes) {
-    std::array<char, sizeof(T)> raw;
-    std::memcpy(raw.data(), bytes, sizeof(T));
-    if constexpr (std::endian::native == std::endian::little) std::ranges::reverse(raw);
-    return std::bit_cast<T>(raw);
+    return load<T>(bytes, is_foreign(std::endian::big));
 }
 
 /// What the numbers of an attribute are.

@@ -2,17 +2,16 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <array>
 #include <bit>
 #include <cstdint>
-#include <cstring>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string_view>
 
 #include "base/error.h"
 #include "io/assimp_reader.h"
+#include "io/byte_order.h"
 #include "io/file_text.h"
 #include "io/formats.h"
 #include "io/polygon_mesh.h"
@@ -31,9 +30,7 @@ std::string_view json_text(std::string_view bytes) {
     constexpr std::size_t kHeader = 20;
     if (!is_binary(bytes)) return bytes;
     if (bytes.size() < kHeader) return {};
-    std::uint32_t size = 0;
-    std::memcpy(&size, bytes.data() + 12, sizeof(size));
-    if constexpr (std::endian::native == std::endian::big) size = __builtin_bswap32(size);
+    const auto size = load<std::uint32_t>(bytes.data() + 12, is_foreign(std::endian::little));
     return bytes.substr(kHeader, size);
 }
 

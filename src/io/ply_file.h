@@ -12,6 +12,7 @@
 #include <string_view>
 #include <vector>
 
+#include "io/byte_order.h"
 #include "io/reader.h"
 
 // The Stanford PLY format, Greg Turk 1994: its header, and its numbers one by one.
@@ -67,7 +68,7 @@ FileContents read_points(const std::filesystem::path& file, const Header& header
 class BinaryValues {
   public:
     BinaryValues(std::string_view body, std::endian order)
-        : rest_(body), swap_(order != std::endian::native) {}
+        : rest_(body), swap_(is_foreign(order)) {}
 
     /// False at the end of the data.
     bool read(Type type, double& value) {
@@ -103,10 +104,7 @@ class BinaryValues {
     template <class T>
     bool read_as(double& value) {
         if (rest_.size() < sizeof(T)) return false;
-        std::array<char, sizeof(T)> bytes;
-        std::memcpy(bytes.data(), rest_.data(), sizeof(T));
-        if (swap_) std::ranges::reverse(bytes);
-        value = static_cast<double>(std::bit_cast<T>(bytes));
+        value = static_cast<double>(load<T>(rest_.data(), swap_));
         rest_.remove_prefix(sizeof(T));
         return true;
     }

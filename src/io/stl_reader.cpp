@@ -3,12 +3,10 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <array>
 #include <atomic>
 #include <bit>
 #include <cstdlib>
-#include <cstring>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -18,6 +16,7 @@
 #include "base/memory.h"
 #include "base/parallel.h"
 #include "base/text.h"
+#include "io/byte_order.h"
 #include "io/file_text.h"
 #include "io/formats.h"
 #include "io/polygon_mesh.h"
@@ -34,10 +33,7 @@ constexpr std::size_t kCountPlace = 80;
 
 template <class T>
 T little_endian(const char* bytes) {
-    std::array<char, sizeof(T)> raw;
-    std::memcpy(raw.data(), bytes, sizeof(T));
-    if constexpr (std::endian::native == std::endian::big) std::ranges::reverse(raw);
-    return std::bit_cast<T>(raw);
+    return load<T>(bytes, is_foreign(std::endian::little));
 }
 
 std::size_t promised_triangles(std::string_view bytes) {

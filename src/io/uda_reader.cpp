@@ -2,13 +2,10 @@
 // are, and of their bytes. https://uintah.utah.edu
 
 #include <fmt/format.h>
-#include <zlib.h>
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
-#include <cstring>
 #include <fstream>
 #include <limits>
 #include <map>
@@ -16,8 +13,10 @@
 #include <utility>
 
 #include "base/error.h"
+#include "io/byte_order.h"
 #include "io/file_text.h"
 #include "io/formats.h"
+#include "io/inflate.h"
 #include "io/particle_file.h"
 #include "io/uda_archive.h"
 
@@ -28,14 +27,6 @@ namespace {
 using Path = std::filesystem::path;
 
 constexpr std::string_view kPositions = "p.x";
-
-template <class T>
-T load(const char* bytes, bool swap) {
-    std::array<char, sizeof(T)> copy;
-    std::memcpy(copy.data(), bytes, sizeof(T));
-    if (swap) std::ranges::reverse(copy);
-    return std::bit_cast<T>(copy);
-}
 
 template <class T>
 double load_number(const char* bytes, bool swap) {
@@ -94,11 +85,7 @@ std::string unpacked(const UdaBlock& block, const UdaStep& step, std::size_t siz
     }
     check_memory(block.file, size);
     std::string bytes(size, '\0');
-    auto length = static_cast<uLongf>(size);
-    const int result = uncompress(reinterpret_cast<Bytef*>(bytes.data()), &length,
-                                  reinterpret_cast<const Bytef*>(stored.data() + header),
-                                  static_cast<uLong>(stored.size() - header));
-    if (result != Z_OK || length != size) {
+    if (!inflate_exactly(std::string_view(stored).substr(header), bytes)) {
         refuse(block, "has damaged compressed data; copy it again");
     }
     return bytes;
@@ -106,9 +93,8 @@ std::string unpacked(const UdaBlock& block, const UdaStep& step, std::size_t siz
 
 /// Refuses a number of particles for which the bytes in the file cannot be enough.
 std::size_t checked_size(const UdaBlock& block, const UdaStep& step, std::size_t particle) {
-    constexpr std::size_t kMostRatio = 1040;  // deflate makes data at most 1032 times as small
     const std::size_t stored = block.end - block.begin;
-    const std::size_t most = block.compressed ? stored * kMostRatio : stored;
+    const std::size_t most = block.compressed ? stored * kMostInflation : stored;
     const bool has_header = !block.compressed || stored >= step.header_bytes;
     if (!has_header || block.particles > most / particle) {
         refuse(block, fmt::format("has {} bytes, too few for {} particles; was it written to the "
@@ -132,7 +118,7 @@ class UdaReader {
         : folder_(folder),
           options_(options),
           step_(read_uda_step(folder, options.frame)),
-          swap_(step_.big_endian != (std::endian::native == std::endian::big)) {}
+          swap_(is_foreign(step_.big_endian ? std::endian::big : std::endian::little)) {}
 
     FileContents read() {
         collect_variables();

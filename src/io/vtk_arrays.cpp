@@ -1,19 +1,20 @@
 #include "io/vtk_arrays.h"
 
 #include <fmt/format.h>
-#include <zlib.h>
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <charconv>
 #include <cstdint>
 #include <cstring>
 #include <limits>
+#include <span>
 #include <type_traits>
 
 #include "base/error.h"
 #include "base/memory.h"
+#include "io/byte_order.h"
+#include "io/inflate.h"
 
 namespace ink {
 
@@ -83,14 +84,6 @@ std::string take_base64(std::string_view& text, std::size_t wanted) {
 
 // ---- blocks ----
 
-template <class T>
-T load(const char* bytes, bool swap) {
-    std::array<char, sizeof(T)> copy;
-    std::memcpy(copy.data(), bytes, sizeof(T));
-    if (swap) std::ranges::reverse(copy);
-    return std::bit_cast<T>(copy);
-}
-
 /// The bytes of one array, taken from the file as they are needed.
 class Source {
   public:
@@ -117,7 +110,7 @@ class ArrayReader {
         : array_(array),
           encoding_(encoding),
           file_(file),
-          swap_(encoding.big_endian != (std::endian::native == std::endian::big)),
+          swap_(is_foreign(encoding.big_endian ? std::endian::big : std::endian::little)),
           source_(data(), array.format == "binary" || encoding.appended_base64) {}
 
     /// The decoded bytes; `buffer` holds them where they are not the file's own.
@@ -197,16 +190,13 @@ class ArrayReader {
 
     void inflate_block(std::string_view packed, std::size_t announced, std::size_t size,
                        std::string& out) const {
-        // Deflate makes data at most 1032 times as small.
-        constexpr std::size_t kMostRatio = 1040;
         if (packed.size() < announced) refuse(file_, array_, "ends too early");
-        if (size / kMostRatio > packed.size()) refuse(file_, array_, "has a block of no sense");
+        if (size / kMostInflation > packed.size()) refuse(file_, array_, "has a block of no sense");
         const std::size_t begin = out.size();
         out.resize(begin + size);
-        auto length = static_cast<uLongf>(size);
-        const int result = uncompress(reinterpret_cast<Bytef*>(out.data() + begin), &length,
-                                      reinterpret_cast<const Bytef*>(packed.data()), packed.size());
-        if (result != Z_OK || length != size) refuse(file_, array_, "has damaged compressed data");
+        if (!inflate_exactly(packed, std::span(out).subspan(begin))) {
+            refuse(file_, array_, "has damaged compressed data");
+        }
     }
 
     const VtkArray& array_;
