@@ -126,7 +126,11 @@ class LineFinder {
         const HitPacket* hits;
         int lane;
     };
-    LatticeHit hit_at(int i, int j) const;
+    /// What a point of the grid hit; it must not be background.
+    LatticeHit hit_at(int i, int j) const {
+        return {&hits_[block_index(i / kBlockSide, j / kBlockSide)],
+                j % kBlockSide * kBlockSide + i % kBlockSide};
+    }
     bool is_smooth(const SuspectEdge& edge) const;
     void describe(std::size_t point, Sample& sample) const;
     void locate();
@@ -140,7 +144,10 @@ class LineFinder {
     void mark(int i, int j);
     void cross_all_faces();
     bool marked(int i, int j) const;
-    std::uint32_t block_index(int i, int j) const;
+    std::uint32_t block_index(int i, int j) const {
+        return block_at_[static_cast<std::size_t>(j) * static_cast<std::size_t>(blocks_across_) +
+                         static_cast<std::size_t>(i)];
+    }
     PixelColor color_at(int i, int j) const;
     PixelColor pixel_color(int x, int y) const;
 

@@ -1,0 +1,177 @@
+// Lines between the faces of meshes, which are drawn from their edges (FaceEdges): what LineFinder
+// keeps for that, and their crossings where other lines run or somebody wants data.
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "base/multiversion.h"
+#include "render/line_finder.h"
+
+namespace ink {
+
+/// Keeps what pixel centres, or the lattice points next to them, see.
+void LineFinder::map_faces(const Tile& tile) {
+    const Timer timer(stats_.lines_ms);
+    const int q = edges_.q;
+    for (std::size_t k = 0; k < blocks_.size(); ++k) {
+        // Those cut off at the tile's end belong to the next tile, which may be at work.
+        const bool whole = blocks_[k].columns == kBlockSide && blocks_[k].rows == kBlockSide;
+        if (!whole) continue;
+        if (q == 1) faces_->put(blocks_[k].x, blocks_[k].y, hits_[k]);
+        add_face_density(k);
+    }
+    if (q == 1) return;
+    for (int y = tile.y0; y < tile.y1; ++y) {
+        for (int x = tile.x0; x < tile.x1; ++x) {
+            const int i = x * q + q / 2 - grid_.x0;
+            const int j = y * q + q / 2 - grid_.y0;
+            if (block_index(i / kBlockSide, j / kBlockSide) == kEmptyBlock) continue;
+            const LatticeHit hit = hit_at(i, j);
+            faces_->put(x, y, *hit.hits, hit.lane);
+        }
+    }
+}
+
+namespace {
+
+/// How many of a block's points see another primitive of their object than the next one in their
+/// row and the next one in their column.
+INKTRACE_MULTIVERSION
+int count_changes(const HitPacket& hits) {
+    // Behind the last row there is nothing.
+    std::array<std::uint32_t, kLanes + kBlockSide> object{};
+    std::array<std::uint32_t, kLanes + kBlockSide> primitive{};
+    for (std::size_t i = 0; i < kLanes; ++i) {
+        object[i] = hits.object.at(i);
+        primitive[i] = hits.primitive.at(i);
+    }
+    std::fill(object.begin() + kLanes, object.end(), kNoObject);
+    int changes = 0;
+    for (std::size_t step : {std::size_t{1}, std::size_t{kBlockSide}}) {
+        for (std::size_t i = 0; i < kLanes; ++i) {
+            const bool within = step != 1 || i % kBlockSide + 1 < kBlockSide;
+            const bool alike = object[i] == object[i + step] && object[i] != kNoObject;
+            changes += within && alike && primitive[i] != primitive[i + step] ? 1 : 0;
+        }
+    }
+    return changes;
+}
+
+}  // namespace
+
+/// How long the lines between faces are in a block, from how often its points see different ones:
+/// a line of any direction crosses lattice edges 4 / pi times a spacing, on average.
+void LineFinder::add_face_density(std::size_t block) {
+    const Block& place = blocks_[block];
+    const HitPacket& hits = hits_[block];
+    const int changes = count_changes(hits);
+    if (changes == 0) return;
+    const std::uint32_t object =
+        *std::ranges::find_if(hits.object, [](std::uint32_t o) { return o != kNoObject; });
+    if (!edges_.surfaces.is_mesh(object)) return;
+    // Of the 32 edges that hang on the block's points, 24 were compared.
+    constexpr float kLength = std::numbers::pi_v<float> / 4.0F * 32.0F / 24.0F;
+    const Vec2f middle = {static_cast<float>(place.x) + 0.5F * kBlockSide,
+                          static_cast<float>(place.y) + 0.5F * kBlockSide};
+    const float length = static_cast<float>(changes) * kLength * grid_.spacing;
+    const float width = edges_.ink.styles[edges_.style_of(LineType::mesh, object)].width_px;
+    density_.add(middle * grid_.spacing, length, width);
+    if (specular_) direct_density_.add(middle * grid_.spacing, length, width);
+}
+
+/// Lines between the faces of meshes, in the cells through which other lines run: as crossings of
+/// those edges of the lattice that have none yet. Beside a crease they are not searched for: there
+/// they are as visible as it is.
+void LineFinder::cross_faces() {
+    marks_.assign(grid_.id.size(), 0);
+    marked_.clear();
+    for (const Crossing& crossing : crossings_) {
+        const SuspectEdge& edge = suspects_[crossing.edge];
+        marks_[grid_.index(edge.i, edge.j)] |= edge.down ? kCrossedDown : kCrossedRight;
+    }
+    for (const Crossing& crossing : crossings_) {
+        const SuspectEdge& edge = suspects_[crossing.edge];
+        if (crossing.type == LineType::crease) continue;
+        mark(edge.i, edge.j);
+        mark(edge.i - (edge.down ? 1 : 0), edge.j - (edge.down ? 0 : 1));
+    }
+    for (const auto [i, j] : marked_) {
+        cross_faces(i, j, false);
+        cross_faces(i, j + 1, false);
+        cross_faces(i, j, true);
+        cross_faces(i + 1, j, true);
+    }
+    if (edges_.pipeline.lines.drawing != nullptr) cross_all_faces();
+}
+
+/// Marks a cell of the grid, if it is one.
+void LineFinder::mark(int i, int j) {
+    if (i < 0 || j < 0 || i + 1 >= grid_.width || j + 1 >= grid_.height || marked(i, j)) return;
+    marks_[grid_.index(i, j)] |= kMarked;
+    marked_.push_back({i, j});
+    faces_->mark(grid_.x0 + i, grid_.y0 + j);
+}
+
+/// Who asks for the lines as data wants them to go on from cell to cell.
+void LineFinder::cross_all_faces() {
+    for (int j = 0; j < grid_.height; ++j) {
+        for (int i = 0; i < grid_.width; ++i) {
+            if (i + 1 < grid_.width) cross_faces(i, j, false);
+            if (j + 1 < grid_.height) cross_faces(i, j, true);
+        }
+    }
+}
+
+bool LineFinder::marked(int i, int j) const { return (marks_[grid_.index(i, j)] & kMarked) != 0; }
+
+/// The same for one edge of the lattice.
+void LineFinder::cross_faces(int i, int j, bool down) {
+    constexpr GeometryId kFaceNumber = 0x80000000U;  // so that it equals no ID
+    const int i_b = i + (down ? 0 : 1);
+    const int j_b = j + (down ? 1 : 0);
+    const std::size_t first = grid_.index(i, j);
+    std::uint8_t& marks = marks_[first];
+    const std::uint8_t crossed = down ? kCrossedDown : kCrossedRight;
+    if ((marks & crossed) != 0) return;
+    marks |= crossed;
+    const std::size_t second = grid_.index(i_b, j_b);
+    if (grid_.id[first] == kBackground || grid_.id[first] != grid_.id[second]) return;
+    const LatticeHit a = hit_at(i, j);
+    const LatticeHit b = hit_at(i_b, j_b);
+    const std::uint32_t face_a = edges_.surfaces.face(*a.hits, a.lane);
+    const std::uint32_t face_b = edges_.surfaces.face(*b.hits, b.lane);
+    if (face_a == face_b) return;
+    const Vec2f from = grid_.point(i, j);
+    const Vec2f to = grid_.point(i_b, j_b);
+    const float at =
+        edges_.surfaces.face_crossing(edges_.viewpoint, from, *a.hits, a.lane, to, *b.hits, b.lane);
+    Crossing crossing;
+    crossing.point = from + (to - from) * at;
+    crossing.type = LineType::mesh;
+    crossing.t = grid_.t[first] + at * (grid_.t[second] - grid_.t[first]);
+    crossing.edge = static_cast<std::uint32_t>(suspects_.size());
+    crossing.first = kFaceNumber | face_a;
+    crossing.second = kFaceNumber | face_b;
+    crossing.nearer = grid_.id[first];
+    crossings_.push_back(crossing);
+    suspects_.push_back(
+        {static_cast<std::uint16_t>(i), static_cast<std::uint16_t>(j), down, Suspicion::none});
+}
+
+/// Elsewhere they are drawn without being found (FaceEdges), and kept as data only.
+void LineFinder::drop_unmarked_faces() {
+    for (Segment& segment : segments_) {
+        if (segment.type != LineType::mesh) continue;
+        const Vec2f middle = (segment.a + segment.b) * (0.5F / grid_.spacing);
+        const int i = static_cast<int>(std::floor(middle.x - 0.5F)) - grid_.x0;
+        const int j = static_cast<int>(std::floor(middle.y - 0.5F)) - grid_.y0;
+        segment.for_data =
+            !marked(std::clamp(i, 0, grid_.width - 2), std::clamp(j, 0, grid_.height - 2));
+    }
+    if (edges_.pipeline.lines.drawing != nullptr) return;
+    std::erase_if(segments_, [](const Segment& segment) { return segment.for_data; });
+}
+
+}  // namespace ink
