@@ -91,6 +91,7 @@ InkTile::InkTile(const InkSettings& settings) : settings_(settings) {
     for (int k = 0; k < kProfileEntries; ++k) {
         profile_.push_back(straight_edge_strength(settings.profile, (k + 0.5) / kProfileEntries));
     }
+    profile_.push_back(0.0F);
 }
 
 void InkTile::begin(int x0, int y0, int width, int height) {
@@ -159,8 +160,8 @@ void InkTile::draw_faces(int x, int y, const Lanes<float>& distance, const Lanes
         cover(distance, nx, ny, 0.5F * width, inks);
     } else {
         for (int i = 0; i < kLanes; ++i) {
-            const float u = distance[i] / (0.5F * width);
-            inks[i] = u < 1.0F ? profile_[static_cast<std::size_t>(u * kProfileEntries)] : 0.0F;
+            const float u = std::min(distance[i] / (0.5F * width), 1.0F);
+            inks[i] = profile_[static_cast<std::size_t>(u * kProfileEntries)];
         }
     }
     const std::size_t k = index(x, y) / kLanes;

@@ -103,7 +103,7 @@ class InkTile {
     void finish_pixel(std::size_t k, std::span<const Layer* const> used);
 
     InkSettings settings_;
-    std::vector<float> profile_;  ///< strength by distance over half width, if soft
+    std::vector<float> profile_;  ///< of soft lines, as draw_soft() wants it
     std::vector<std::size_t> layer_of_style_;
     std::vector<Layer> layers_;
     std::vector<const Layer*> used_;

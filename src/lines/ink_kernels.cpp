@@ -68,6 +68,36 @@ class SquareCoverageLanes {
     Number reach_, flat_, slope_, corner_;
 };
 
+/// Distances from a band's middle line.
+class BandFrame {
+  public:
+    HWY_INLINE explicit BandFrame(const Band& band)
+        : ax_(set(band.a.x)),
+          ay_(set(band.a.y)),
+          along_x_(set(band.along.x)),
+          along_y_(set(band.along.y)),
+          length_(set(band.length)) {}
+    /// Of the centres of a block's pixels from the i-th on; (x, y) is that of its first pixel.
+    HWY_INLINE Number distance(float x, float y, int i) const {
+        const Number rx = hn::Sub(hn::Add(set(x), load(kBlockOffsets.x, i)), ax_);
+        const Number ry = hn::Sub(hn::Add(set(y), load(kBlockOffsets.y, i)), ay_);
+        const Number s = hn::Add(hn::Mul(rx, along_x_), hn::Mul(ry, along_y_));
+        const Number across = hn::Sub(hn::Mul(ry, along_x_), hn::Mul(rx, along_y_));
+        const Number beyond = hn::Max(hn::Max(hn::Neg(s), hn::Sub(s, length_)), hn::Zero(kFloats));
+        return hn::Sqrt(hn::Add(hn::Mul(across, across), hn::Mul(beyond, beyond)));
+    }
+
+  private:
+    Number ax_, ay_, along_x_, along_y_, length_;
+};
+
+/// Where there is ink, `nearest` becomes at most `t`.
+HWY_INLINE void keep_nearest(Number ink, float t, float* nearest) {
+    const auto inked = hn::Gt(ink, hn::Zero(kFloats));
+    const Number at = hn::IfThenElse(inked, set(t), set(kInfinity));
+    hn::Store(hn::Min(hn::Load(kFloats, nearest), at), kFloats, nearest);
+}
+
 /// Calls `draw(k, x, y)` for those blocks of a range that a band may ink, and marks them; (x, y) is
 /// the centre of the block's first pixel.
 template <class Draw>
@@ -103,24 +133,13 @@ HWY_INLINE void for_each_block(const Band& band, const BlockRange& range, const 
 template <bool kWide>
 HWY_INLINE void draw_blocks(const Band& band, const BlockRange& range, const InkPlanes& planes) {
     const SquareCoverageLanes coverage({band.along.y, band.along.x});
-    const Number ax = set(band.a.x);
-    const Number ay = set(band.a.y);
-    const Number along_x = set(band.along.x);
-    const Number along_y = set(band.along.y);
-    const Number length = set(band.length);
+    const BandFrame frame(band);
     const Number half = set(band.half);
     const Number strength = set(band.strength);
-    const Number zero = hn::Zero(kFloats);
     for_each_block(band, range, planes, [&](std::size_t k, float x, float y) HWY_ATTR {
         bool full = planes.t == nullptr;
         for (int i = 0; i < kLanes; i += kStep) {
-            const Number rx = hn::Sub(hn::Add(set(x), load(kBlockOffsets.x, i)), ax);
-            const Number ry = hn::Sub(hn::Add(set(y), load(kBlockOffsets.y, i)), ay);
-            const Number s = hn::Add(hn::Mul(rx, along_x), hn::Mul(ry, along_y));
-            const Number across = hn::Sub(hn::Mul(ry, along_x), hn::Mul(rx, along_y));
-            const Number beyond = hn::Max(hn::Max(hn::Neg(s), hn::Sub(s, length)), zero);
-            const Number distance =
-                hn::Sqrt(hn::Add(hn::Mul(across, across), hn::Mul(beyond, beyond)));
+            const Number distance = frame.distance(x, y, i);
             Number area = coverage(hn::Sub(half, distance));
             if constexpr (!kWide) {
                 area = hn::Sub(area, coverage(hn::Sub(hn::Neg(half), distance)));
@@ -131,11 +150,9 @@ HWY_INLINE void draw_blocks(const Band& band, const BlockRange& range, const Ink
             hn::Store(covered, kFloats, most);
             if (planes.t == nullptr) {
                 full = full && hn::AllTrue(kFloats, hn::Ge(covered, set(1.0F)));
-                continue;
+            } else {
+                keep_nearest(ink, band.t, planes.t[k].data() + i);
             }
-            float* nearest = planes.t[k].data() + i;
-            const Number t = hn::IfThenElse(hn::Gt(ink, zero), set(band.t), set(kInfinity));
-            hn::Store(hn::Min(hn::Load(kFloats, nearest), t), kFloats, nearest);
         }
         if (full) planes.touched[k] = kFull;
     });
@@ -152,19 +169,19 @@ void draw_band(const Band& band, const BlockRange& range, const InkPlanes& plane
 
 void draw_soft_band(const Band& band, const BlockRange& range, const InkPlanes& planes,
                     std::span<const float> profile) {
-    const auto entries = static_cast<float>(profile.size());
+    const hn::RebindToSigned<Floats> indices;
+    const BandFrame frame(band);
+    const Number half = set(band.half);
+    const Number strength = set(band.strength);
+    const Number entries = set(static_cast<float>(profile.size() - 1));
     for_each_block(band, range, planes, [&](std::size_t k, float x, float y) HWY_ATTR {
-        for (int i = 0; i < kLanes; ++i) {
-            const float rx = (x + kBlockOffsets.x[i]) - band.a.x;
-            const float ry = (y + kBlockOffsets.y[i]) - band.a.y;
-            const float s = rx * band.along.x + ry * band.along.y;
-            const float across = ry * band.along.x - rx * band.along.y;
-            const float beyond = std::max(std::max(-s, s - band.length), 0.0F);
-            const float u = std::sqrt(across * across + beyond * beyond) / band.half;
-            if (u >= 1.0F) continue;
-            const float ink = profile[static_cast<std::size_t>(u * entries)] * band.strength;
-            planes.coverage[k][i] = std::max(planes.coverage[k][i], ink);
-            if (planes.t != nullptr) planes.t[k][i] = std::min(planes.t[k][i], band.t);
+        for (int i = 0; i < kLanes; i += kStep) {
+            const Number u = hn::Min(hn::Div(frame.distance(x, y, i), half), set(1.0F));
+            const auto entry = hn::ConvertTo(indices, hn::Mul(u, entries));
+            const Number ink = hn::Mul(hn::GatherIndex(kFloats, profile.data(), entry), strength);
+            float* most = planes.coverage[k].data() + i;
+            hn::Store(hn::Max(hn::Load(kFloats, most), ink), kFloats, most);
+            if (planes.t != nullptr) keep_nearest(ink, band.t, planes.t[k].data() + i);
         }
     });
 }

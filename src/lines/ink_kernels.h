@@ -40,7 +40,7 @@ inline constexpr std::uint8_t kTouched = 1, kFull = 2;
 void draw_solid(const Band& band, const BlockRange& range, const InkPlanes& planes);
 
 /// Inks each pixel by the distance of its centre from the line: `profile` holds strengths for
-/// distances from 0 to half the width.
+/// equal steps of distance from 0 to half the width, and a last 0 for all beyond.
 void draw_soft(const Band& band, const BlockRange& range, const InkPlanes& planes,
                std::span<const float> profile);
 
