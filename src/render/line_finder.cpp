@@ -6,10 +6,13 @@
 #include <utility>
 
 #include "base/multiversion.h"
+#include "render/block_mean.h"
 
 namespace ink {
 
 namespace {
+
+constexpr std::size_t kMostPointsInPixel = 16;  // --lattice 4
 
 ScreenBox screen_box(const Block& block, float spacing) {
     const auto left = static_cast<float>(block.x);
@@ -188,27 +191,19 @@ void LineFinder::put_block(int x, int y) {
     const int q = edges_.q;
     const int i0 = (x * q - grid_.x0) / kBlockSide;
     const int j0 = (y * q - grid_.y0) / kBlockSide;
+    const ColorPacket& background = edges_.pipeline.shader.background();
+    std::array<const ColorPacket*, kMostPointsInPixel> blocks;
     bool any = false;
     for (int n = 0; n < q * q; ++n) {
         const std::uint32_t k = block_index(i0 + n % q, j0 + n / q);
+        blocks[static_cast<std::size_t>(n)] = k == kEmptyBlock ? &background : &colors_[k];
         any |= k != kEmptyBlock && seen_[k] != 0;
     }
     const bool changes = smooths_ && smoothing_.changes(x, y);
     if (!any && !changes) return film.put_background(x, y);
-    if (q == 1 && !changes) return film.put(x, y, colors_[block_index(i0, j0)]);
+    if (q == 1 && !changes) return film.put(x, y, *blocks[0]);
 
-    ColorPacket mean;
-    if (q == 1) {
-        const std::uint32_t k = block_index(i0, j0);
-        mean = k == kEmptyBlock ? edges_.pipeline.shader.background() : colors_[k];
-    }
-    for (int lane = 0; q > 1 && lane < kLanes; ++lane) {
-        const PixelColor color = pixel_color(x + lane % kBlockSide, y + lane / kBlockSide);
-        mean.r[lane] = color[0];
-        mean.g[lane] = color[1];
-        mean.b[lane] = color[2];
-        mean.a[lane] = color[3];
-    }
+    ColorPacket mean = q == 1 ? *blocks[0] : mean_of_blocks(blocks, q);
     if (changes) smoothing_.apply(x, y, mean);
     film.put(x, y, mean);
 }
