@@ -21,11 +21,10 @@ namespace {
 
 std::string formats() {
     std::string text =
-        "'inktrace FILE...' is short for 'inktrace render FILE...'.\n\nReads (all of them also "
-        "compressed, "
-        "as .gz):";
+        "'inktrace FILE...' is short for 'inktrace render FILE...'.\n\n"
+        "Reads (all of them also compressed, as .gz):";
     for (const auto& [name, extensions] : inktrace::input_formats()) {
-        text += fmt::format("\n  {:<13}{}", name, extensions);
+        text += fmt::format("\n  {:<15}{}", name, extensions);
     }
     return text;
 }
