@@ -12,6 +12,7 @@
 #include "drawing.h"
 #include "edges_view.h"
 #include "lines/coverage.h"
+#include "lines/density.h"
 #include "scenes.h"
 
 namespace ink::test {
@@ -245,6 +246,7 @@ TEST_P(PapersLook, IsThatOfStencilsWithManyRings) {
     Settings settings;
     settings.size = {192, 192};
     settings.line_width = {8, Length::Unit::px};
+    settings.line_density = 1.0;  // stencils know no other
     settings.aovs = {Aov::lines, Aov::id};
     set(settings, "metric", GetParam());
     const Film edges = draw(scene, settings);
@@ -299,9 +301,9 @@ std::vector<float> ink_of_packed_spheres(int side, double density, double width_
 TEST(DenseLines, BecomeAToneHoweverSmallThePicture) {
     double before = 0.0;
     for (const int side : {600, 400, 280, 200, 140, 100, 70, 50, 35}) {
-        const double tone = mean(ink_of_packed_spheres(side, 0.75));
-        EXPECT_LT(tone, 0.7) << side;
-        EXPECT_GT(tone, 0.2) << side;
+        const double tone = mean(ink_of_packed_spheres(side, Settings{}.line_density));
+        EXPECT_LT(tone, 0.4) << side;
+        EXPECT_GT(tone, 0.15) << side;
         // No step in tone between pictures of similar size.
         EXPECT_NEAR(tone, before > 0.0 ? before : tone, 0.12) << side;
         before = tone;
@@ -312,6 +314,22 @@ TEST(DenseLines, BecomeAToneHoweverSmallThePicture) {
 TEST(DenseLines, KeepTheirWidthWhereThereIsRoom) {
     const std::vector<float> sparse = ink_of_packed_spheres(1400, 0.75, 1.5);
     EXPECT_EQ(sparse, ink_of_packed_spheres(1400, 1.0, 1.5));
+}
+
+TEST(DenseLines, LeaveABundleOfThreeTheirWidth) {
+    for (const float width : {2.0F, 3.0F, 8.0F}) {
+        LineDensity density(0, 0, 1000, 1000, width);
+        for (int line = 0; line < 3; ++line) {
+            const float y = 500.0F + 2.0F * width * static_cast<float>(line);
+            for (int x = 0; x < 1000; ++x) density.add({static_cast<float>(x), y}, 1.0F, width);
+        }
+        density.finish();
+        const auto most = static_cast<float>(Settings{}.line_density);
+        for (int y = 450; y < 600; ++y) {
+            const float share = density.at({500.0F, static_cast<float>(y)});
+            EXPECT_GT(width_scale(share, most), 0.99F) << width << " " << y;
+        }
+    }
 }
 
 // Invariances

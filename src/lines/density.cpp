@@ -15,7 +15,7 @@ int floor_divide(int a, int b) { return (a >= 0 ? a : a - b + 1) / b; }
 
 /// Squares must be wide enough for a single line, and a bundle of three, to count as sparse.
 constexpr int kLeastSide = 16;
-constexpr float kWidths = 8.0F;
+constexpr float kWidths = 9.0F;
 
 }  // namespace
 
