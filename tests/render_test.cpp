@@ -2,12 +2,15 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstdlib>
 #include <variant>
 
 #include "base/error.h"
 #include "drawing.h"
+#include "film/srgb_bytes.h"
 #include "lines/strength.h"
 #include "scenes.h"
 
@@ -285,6 +288,36 @@ std::pair<float, std::uint32_t> half_inked(const Film& film) {
         if (std::abs(strength[i] - 0.5F) < std::abs(strength[best] - 0.5F)) best = i;
     }
     return {strength[best], film.display().pixels[best]};
+}
+
+TEST(SrgbBytes, AreTheNearestOnesToTheCurveForFloatsOfAllSizes) {
+    const auto nearest = [](float linear) {
+        const double x = std::clamp(static_cast<double>(linear), 0.0, 1.0);
+        const double curve = x <= 0.0031308 ? 12.92 * x : 1.055 * std::pow(x, 1.0 / 2.4) - 0.055;
+        return 255.0 * curve;
+    };
+    const auto byte = [](float linear) {
+        ColorPacket colors{};
+        colors.a.fill(1.0F);
+        colors.g.fill(linear);
+        Lanes<std::uint32_t> bytes;
+        encode_bytes(colors, bytes);
+        return static_cast<int>(bytes[5] >> 8U & 0xFFU);
+    };
+    for (std::uint32_t bits = 0; bits < std::bit_cast<std::uint32_t>(2.0F); bits += 20011) {
+        const auto linear = std::bit_cast<float>(bits);
+        ASSERT_NEAR(byte(linear), nearest(linear), 0.5 + 1e-5) << linear;
+    }
+    for (int k = 1; k <= 255; ++k) {
+        const double display = (k - 0.5) / 255.0;
+        const double edge =
+            display <= 0.04045 ? display / 12.92 : std::pow((display + 0.055) / 1.055, 2.4);
+        EXPECT_EQ(byte(static_cast<float>(edge * (1.0 - 1e-6))), k - 1);
+        EXPECT_EQ(byte(static_cast<float>(edge * (1.0 + 1e-6))), k);
+    }
+    EXPECT_EQ(byte(-1.0F), 0);
+    EXPECT_EQ(byte(-0.0F), 0);
+    EXPECT_EQ(byte(7.0F), 255);
 }
 
 TEST(Compose, MixesTheLineInDisplayOrLinearSpaceAsAsked) {

@@ -7,6 +7,7 @@
 #include <variant>
 
 #include "base/multiversion.h"
+#include "film/srgb_bytes.h"
 
 namespace ink {
 
@@ -26,9 +27,9 @@ INKTRACE_INLINE float encode(float linear) {
 }
 
 INKTRACE_INLINE bool is_opaque(const ColorPacket& c) {
-    bool opaque = true;
-    for (int i = 0; i < kLanes; ++i) opaque &= c.a[i] == 1.0F;
-    return opaque;
+    std::int32_t clear = 0;
+    for (int i = 0; i < kLanes; ++i) clear |= c.a[i] != 1.0F ? 1 : 0;
+    return clear == 0;
 }
 
 INKTRACE_INLINE void unpremultiply(ColorPacket& c) {
@@ -78,21 +79,6 @@ void pack(ColorPacket& c, Lanes<std::uint32_t>& bytes) {
         bytes[i] = static_cast<std::uint32_t>(quantize(c.r[i]) | quantize(c.g[i]) << 8 |
                                               quantize(c.b[i]) << 16) |
                    static_cast<std::uint32_t>(quantize(c.a[i])) << 24U;
-    }
-}
-
-/// Linear to display bytes in one go.
-INKTRACE_MULTIVERSION
-void encode_bytes(const ColorPacket& linear, Lanes<std::uint32_t>& bytes) {
-    ColorPacket c = linear;
-    if (!is_opaque(c)) unpremultiply(c);
-    for (int i = 0; i < kLanes; ++i) {
-        const auto quantize = [](float v) { return static_cast<std::int32_t>(v * 255.0F + 0.5F); };
-        // Polynomials may leave [0, 1] by a hair, which rounding takes back.
-        bytes[i] =
-            static_cast<std::uint32_t>(quantize(encode(c.r[i])) | quantize(encode(c.g[i])) << 8 |
-                                       quantize(encode(c.b[i])) << 16) |
-            static_cast<std::uint32_t>(quantize(std::min(std::max(c.a[i], 0.0F), 1.0F))) << 24U;
     }
 }
 
@@ -242,6 +228,7 @@ void load_block(Size size, int x, int y, const T* plane, Lanes<T>& block) {
 
 Film::Film(Size size, const FilmSettings& settings) : size_(size), settings_(settings) {
     line_ = in_blend_space(settings.line_color);
+    paper_ = constant({1.0F, 1.0F, 1.0F}, settings.transparent_background ? 0.0F : 1.0F);
     display_.size = size;
     channels_.size = size;
     if (settings.display) display_.pixels.resize(size.pixels());
@@ -249,11 +236,9 @@ Film::Film(Size size, const FilmSettings& settings) : size_(size), settings_(set
         for (const char* name : {"R", "G", "B", "A"}) add_plane<float>(name);
     }
 
-    ColorPacket background =
+    const ColorPacket background =
         constant(srgb_decode(settings.background), settings.transparent_background ? 0.0F : 1.0F);
-    background = paper(background);
-    if (settings.blend == BlendSpace::display) encode(background);
-    finish(background, background_);
+    finish_shaded(background, background_);
 }
 
 Color Film::in_blend_space(Rgb8 color) const {
@@ -262,14 +247,8 @@ Color Film::in_blend_space(Rgb8 color) const {
             static_cast<float>(color.b) / 255.0F};
 }
 
-/// What lies below the lines: the shaded colour, or white paper for lines alone.
-ColorPacket Film::paper(const ColorPacket& shaded) const {
-    if (settings_.compose != Compose::lines) return shaded;
-    return constant({1.0F, 1.0F, 1.0F}, settings_.transparent_background ? 0.0F : 1.0F);
-}
-
 void Film::add(const ColorPacket& shaded, const Lanes<float>& strength, PixelSums& sums) const {
-    const ColorPacket below = paper(shaded);
+    const ColorPacket& below = settings_.compose == Compose::lines ? paper_ : shaded;
     ColorPacket blend_space = below;
     if (settings_.blend == BlendSpace::display) encode(blend_space);
     accumulate(below, blend_space, strength, sums);
@@ -290,16 +269,17 @@ void Film::put(int x, int y, const PixelSums& sums) {
 }
 
 void Film::put(int x, int y, const ColorPacket& shaded) {
-    if (plain_bytes() && settings_.compose != Compose::lines) {
-        Lanes<std::uint32_t> bytes;
-        encode_bytes(shaded, bytes);
-        return copy_block(size_, x, y, bytes, display_.pixels.data());
-    }
-    ColorPacket colors = paper(shaded);
-    if (settings_.blend == BlendSpace::display) encode(colors);
     Block block;
-    finish(colors, block);
+    finish_shaded(shaded, block);
     store(x, y, block);
+}
+
+/// Where there are no lines, nothing needs to go through the blend space.
+void Film::finish_shaded(const ColorPacket& shaded, Block& block) const {
+    const bool covered = settings_.compose == Compose::lines;
+    const ColorPacket& colors = covered ? paper_ : shaded;
+    if (settings_.linear) block.linear = colors;
+    if (settings_.display) encode_bytes(colors, block.display);
 }
 
 /// From the blend space to what the film keeps.
@@ -308,8 +288,10 @@ void Film::finish(ColorPacket& blended, Block& block) const {
         block.linear = blended;
         if (settings_.blend == BlendSpace::display) decode(block.linear);
     }
-    if (settings_.display) {
-        if (settings_.blend == BlendSpace::linear) encode(blended);
+    if (!settings_.display) return;
+    if (settings_.blend == BlendSpace::linear) {
+        encode_bytes(blended, block.display);
+    } else {
         pack(blended, block.display);
     }
 }
@@ -339,12 +321,10 @@ void Film::put_pixel(int x, int y, const std::array<float, 4>& shaded) {
     one.g[lane] = shaded[1];
     one.b[lane] = shaded[2];
     one.a[lane] = shaded[3];
-    one = paper(one);
-    if (settings_.blend == BlendSpace::display) encode(one);
     Block all{};
     load(x0, y0, all);
     Block finished{};
-    finish(one, finished);
+    finish_shaded(one, finished);
     all.display[lane] = finished.display[lane];
     all.linear.r[lane] = finished.linear.r[lane];
     all.linear.g[lane] = finished.linear.g[lane];

@@ -103,19 +103,20 @@ class Film {
         Lanes<std::uint32_t> display;  ///< if display pixels are
     };
 
-    ColorPacket paper(const ColorPacket& shaded) const;
     /// Whether pixels are bytes and nothing else, and lines are mixed with them as they are.
     bool plain_bytes() const {
         return settings_.display && !settings_.linear && settings_.blend == BlendSpace::display;
     }
     void finish(ColorPacket& blended, Block& block) const;
+    void finish_shaded(const ColorPacket& shaded, Block& block) const;
     void load(int x, int y, Block& block) const;
     ColorPacket in_blend_space(const Block& block) const;
     void store(int x, int y, const Block& block);
 
     Size size_;
     FilmSettings settings_;
-    Color line_;  ///< in the blend space
+    Color line_;         ///< in the blend space
+    ColorPacket paper_;  ///< below lines alone, instead of what is shaded
     DisplayImage display_;
     ChannelImage channels_;
     Block background_{};

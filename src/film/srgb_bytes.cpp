@@ -1,0 +1,105 @@
+#include "film/srgb_bytes.h"
+
+#include <cmath>
+
+// Everything between the two namespace macros is built once for each instruction set.
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "film/srgb_bytes.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace ink::HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+using Floats = hn::CappedTag<float, kLanes>;
+using Integers = hn::RebindToSigned<Floats>;
+constexpr Floats kFloats;
+constexpr Integers kIntegers;
+constexpr int kStep = static_cast<int>(hn::MaxLanes(Floats()));
+
+/// Floats above zero are in the order of their bits.
+HWY_INLINE hn::Vec<Integers> srgb_byte(const SrgbBytes& table, hn::Vec<Floats> linear) {
+    const auto bits = hn::BitCast(kIntegers, linear);
+    const auto first = hn::Set(kIntegers, SrgbBytes::kFirst);
+    const auto clamped = hn::Min(hn::Max(bits, first), hn::Set(kIntegers, SrgbBytes::kOne));
+    const auto above = hn::Sub(clamped, first);
+    const auto entry =
+        hn::GatherIndex(kIntegers, table.entries.data(), hn::ShiftRight<SrgbBytes::kShift>(above));
+    const auto within = hn::And(above, hn::Set(kIntegers, SrgbBytes::kWithin));
+    return hn::ShiftRight<SrgbBytes::kShift>(hn::Add(entry, within));
+}
+
+void encode(const SrgbBytes& table, const ColorPacket& linear, Lanes<std::uint32_t>& bytes) {
+    const auto zero = hn::Zero(kFloats);
+    const auto one = hn::Set(kFloats, 1.0F);
+    for (int i = 0; i < kLanes; i += kStep) {
+        const auto a = hn::Load(kFloats, linear.a.data() + i);
+        auto r = hn::Load(kFloats, linear.r.data() + i);
+        auto g = hn::Load(kFloats, linear.g.data() + i);
+        auto b = hn::Load(kFloats, linear.b.data() + i);
+        if (!hn::AllTrue(kFloats, hn::Eq(a, one))) {
+            const auto seen = hn::Gt(a, zero);
+            const auto scale = hn::IfThenElseZero(seen, hn::Div(one, hn::IfThenElse(seen, a, one)));
+            r = hn::Mul(r, scale);
+            g = hn::Mul(g, scale);
+            b = hn::Mul(b, scale);
+        }
+        const auto alpha = hn::ConvertTo(
+            kIntegers, hn::Add(hn::Mul(hn::Min(hn::Max(a, zero), one), hn::Set(kFloats, 255.0F)),
+                               hn::Set(kFloats, 0.5F)));
+        const auto pixel =
+            hn::Or(hn::Or(srgb_byte(table, r), hn::ShiftLeft<8>(srgb_byte(table, g))),
+                   hn::Or(hn::ShiftLeft<16>(srgb_byte(table, b)), hn::ShiftLeft<24>(alpha)));
+        hn::Store(hn::BitCast(hn::RebindToUnsigned<Integers>(), pixel),
+                  hn::RebindToUnsigned<Integers>(), bytes.data() + i);
+    }
+}
+
+}  // namespace ink::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+
+namespace ink {
+
+namespace {
+
+/// IEC 61966-2-1.
+double to_linear(double display) {
+    return display <= 0.04045 ? display / 12.92 : std::pow((display + 0.055) / 1.055, 2.4);
+}
+
+/// Bits of the smallest float whose nearest byte is `byte` > 0.
+std::int32_t first_bits(int byte) {
+    const double edge = to_linear((byte - 0.5) / 255.0);
+    auto nearest = static_cast<float>(edge);
+    if (static_cast<double>(nearest) < edge) nearest = std::nextafter(nearest, 1.0F);
+    return std::bit_cast<std::int32_t>(nearest);
+}
+
+}  // namespace
+
+SrgbBytes::SrgbBytes() {
+    int byte = 0;
+    std::int32_t next = first_bits(1);
+    for (std::size_t k = 0; k < kEntries; ++k) {
+        const std::int32_t start = kFirst + static_cast<std::int32_t>(k << kShift);
+        entries[k] = byte << kShift;
+        if (byte == 255 || next - start > kWithin) continue;
+        entries[k] += (1 << kShift) - (next - start);
+        if (++byte < 255) next = first_bits(byte + 1);
+    }
+}
+
+HWY_EXPORT(encode);
+
+void encode_bytes(const ColorPacket& linear, Lanes<std::uint32_t>& bytes) {
+    static const SrgbBytes kTable;
+    HWY_DYNAMIC_DISPATCH(encode)(kTable, linear, bytes);
+}
+
+}  // namespace ink
+
+#endif
