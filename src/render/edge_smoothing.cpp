@@ -19,20 +19,6 @@ constexpr hn::FixedTag<std::int32_t, 4> kFourIntegers;
 
 Four set(float value) { return hn::Set(kFour, value); }
 
-/// square_coverage (lines/coverage.h) of four squares.
-Four covered(Four inside, Vec2f normal) {
-    const float wide = std::max(std::abs(normal.x), std::abs(normal.y));
-    const float narrow = std::min(std::abs(normal.x), std::abs(normal.y));
-    const Four reach = set(0.5F * (wide + narrow));
-    const Four off = hn::Min(hn::Abs(inside), reach);
-    const Four rest = hn::Sub(reach, off);
-    const Four flat = hn::Sub(set(0.5F), hn::Mul(off, set(1.0F / wide)));
-    const Four corner =
-        hn::Mul(hn::Mul(rest, rest), set(1.0F / (2.0F * std::max(wide * narrow, 1e-6F))));
-    const Four outer = hn::IfThenElse(hn::Le(off, set(0.5F * (wide - narrow))), flat, corner);
-    return hn::IfThenElse(hn::Ge(inside, set(0.0F)), hn::Sub(set(1.0F), outer), outer);
-}
-
 constexpr float kFixedPoint = 1 << 22;
 constexpr float kMostChange = 64.0F;
 
@@ -61,64 +47,42 @@ void EdgeSmoothing::begin(const Tile& tile) {
     shifts_.resize(size);
     touched_.assign(size, 0);
     any_ = false;
+    waiting_ = 0;
 }
 
 void EdgeSmoothing::add(const Segment& segment, const PixelColor& left, const PixelColor& right) {
-    // The four corners of the cell side by side, then the four channels of each.
     const auto change =
         hn::Clamp(hn::Sub(hn::LoadU(kFour, right.data()), hn::LoadU(kFour, left.data())),
                   set(-kMostChange), set(kMostChange));
     if (hn::AllTrue(kFour, hn::Eq(change, set(0.0F)))) return;
-    const Vec2f d = segment.b - segment.a;
-    const float length = std::sqrt(d.x * d.x + d.y * d.y);
-    if (length == 0.0F) return;
-    const auto q = static_cast<float>(q_);
-    // Towards the segment's left: see Segment.
-    const Vec2f normal{d.y / length, -d.x / length};
-    const Vec2f middle = (segment.a + segment.b) * 0.5F;
-    const auto cell_x = static_cast<int>(std::floor(middle.x * q - 0.5F));
-    const auto cell_y = static_cast<int>(std::floor(middle.y * q - 0.5F));
+    hn::StoreU(change, kFour, changes_[static_cast<std::size_t>(waiting_)].data());
+    ends_.ax[waiting_] = segment.a.x;
+    ends_.ay[waiting_] = segment.a.y;
+    ends_.bx[waiting_] = segment.b.x;
+    ends_.by[waiting_] = segment.b.y;
+    if (++waiting_ == kLanes) finish();
+}
 
-    alignas(16) constexpr std::array<float, 4> kX{0.0F, 1.0F, 0.0F, 1.0F};
-    alignas(16) constexpr std::array<float, 4> kY{0.0F, 0.0F, 1.0F, 1.0F};
-    const float spacing = 1.0F / q;
-    const auto to_left = [&](Four x, Four y) {
-        return hn::Add(hn::Mul(hn::Sub(x, set(segment.a.x)), set(normal.x)),
-                       hn::Mul(hn::Sub(y, set(segment.a.y)), set(normal.y)));
-    };
-    // A place in the cell, in spacings from its first corner.
-    const auto place = [&](int cell, Four inside) {
-        return hn::Mul(hn::Add(set(static_cast<float>(cell) + 0.5F), inside), set(spacing));
-    };
-    const Four x = hn::Load(kFour, kX.data());
-    const Four y = hn::Load(kFour, kY.data());
-    const auto on_left = hn::Gt(to_left(place(cell_x, x), place(cell_y, y)), set(0.0F));
-    const auto quarter = [&](Four corner) {  // its middle
-        return hn::Add(hn::Mul(corner, set(0.5F)), set(0.25F));
-    };
-    // In units of the quarter's side.
-    const Four inside =
-        hn::Mul(to_left(place(cell_x, quarter(x)), place(cell_y, quarter(y))), set(2.0F * q));
-    const Four beyond = covered(hn::IfThenElse(on_left, hn::Neg(inside), inside), normal);
-    // Towards the right side's colour for corners on the left, and back.
-    const Four area = hn::Mul(beyond, set(0.25F / (q * q) * kFixedPoint));
-    alignas(16) std::array<float, 4> scale;
-    hn::Store(hn::IfThenElse(on_left, area, hn::Neg(area)), kFour, scale.data());
+void EdgeSmoothing::finish() {
+    find_corner_shares(ends_, q_, shares_);
+    for (int k = 0; k < waiting_; ++k) spread(k);
+    waiting_ = 0;
+}
 
+/// Adds one of the waiting segments' colour changes to the pixels at the corners of its cell:
+/// towards the right side's colour for corners on the left, and back.
+void EdgeSmoothing::spread(int k) {
+    const auto change = hn::LoadU(kFour, changes_[static_cast<std::size_t>(k)].data());
     for (int corner = 0; corner < 4; ++corner) {
-        const auto n = static_cast<std::size_t>(corner);
-        if (scale[n] == 0.0F) continue;
-        const int i = cell_x + corner % 2;
-        const int j = cell_y + corner / 2;
-        const int pixel_x = (q_ == 1 ? i : floor_divide(i, q_)) - tile_.x0;
-        const int pixel_y = (q_ == 1 ? j : floor_divide(j, q_)) - tile_.y0;
-        if (pixel_x < 0 || pixel_y < 0 || pixel_x > tile_.x1 - tile_.x0 ||
-            pixel_y > tile_.y1 - tile_.y0) {
-            continue;
-        }
-        std::int32_t* const sum = shift_of(pixel_x, pixel_y).data();
+        const int i = shares_.cell_x[k] + corner % 2;
+        const int j = shares_.cell_y[k] + corner / 2;
+        const int x = (q_ == 1 ? i : floor_divide(i, q_)) - tile_.x0;
+        const int y = (q_ == 1 ? j : floor_divide(j, q_)) - tile_.y0;
+        if (x < 0 || y < 0 || x > tile_.x1 - tile_.x0 || y > tile_.y1 - tile_.y0) continue;
+        const float share = shares_.area[static_cast<std::size_t>(corner)][k] * kFixedPoint;
+        std::int32_t* const sum = shift_of(x, y).data();
         const auto added = hn::ConvertTo(
-            kFourIntegers, hn::Floor(hn::Add(hn::Mul(change, set(scale[n])), set(0.5F))));
+            kFourIntegers, hn::Floor(hn::Add(hn::Mul(change, set(share)), set(0.5F))));
         hn::StoreU(hn::Add(hn::LoadU(kFourIntegers, sum), added), kFourIntegers, sum);
     }
 }
@@ -138,17 +102,35 @@ ColorShift& EdgeSmoothing::shift_of(int x, int y) {
 
 void EdgeSmoothing::apply(int x, int y, ColorPacket& colors) const {
     const ShiftBlock& shifts = shifts_[block(x, y)];
-    const int first_row = y == tile_.y0 ? 1 : 0;
-    const int first_column = x == tile_.x0 ? 1 : 0;
-    for (int lane = 0; lane < kLanes; ++lane) {
-        const ColorShift& shift = shifts[static_cast<std::size_t>(lane)];
-        if (lane / kBlockSide < first_row || lane % kBlockSide < first_column || is_zero(shift)) {
-            continue;
-        }
-        colors.r[lane] = shifted(colors.r[lane], shift[0], kInfinity);
-        colors.g[lane] = shifted(colors.g[lane], shift[1], kInfinity);
-        colors.b[lane] = shifted(colors.b[lane], shift[2], kInfinity);
-        colors.a[lane] = shifted(colors.a[lane], shift[3], 1.0F);
+    const auto inside =
+        hn::Gt(hn::Iota(kFourIntegers, 0), hn::Set(kFourIntegers, x == tile_.x0 ? 0 : -1));
+    for (int row = y == tile_.y0 ? 1 : 0; row < kBlockSide; ++row) {
+        const auto first = static_cast<std::size_t>(row * kBlockSide);
+        // Four pixels of four channels into four channels of four pixels.
+        const auto load = [&](std::size_t pixel) {
+            return hn::LoadU(kFourIntegers, shifts[first + pixel].data());
+        };
+        const auto lower = [&](std::size_t pixel) {
+            return hn::InterleaveLower(kFourIntegers, load(pixel), load(pixel + 1));
+        };
+        const auto upper = [&](std::size_t pixel) {
+            return hn::InterleaveUpper(kFourIntegers, load(pixel), load(pixel + 1));
+        };
+        const auto shift = [&](Lanes<float>& channel, auto by, float most) {
+            float* const values = channel.data() + first;
+            const auto change = hn::Mul(hn::ConvertTo(kFour, hn::IfThenElseZero(inside, by)),
+                                        set(1.0F / kFixedPoint));
+            const auto sum = hn::Add(hn::Load(kFour, values), change);
+            hn::Store(hn::Min(hn::Max(sum, set(0.0F)), set(most)), kFour, values);
+        };
+        const auto rg01 = lower(0);
+        const auto rg23 = lower(2);
+        const auto ba01 = upper(0);
+        const auto ba23 = upper(2);
+        shift(colors.r, hn::ConcatLowerLower(kFourIntegers, rg23, rg01), kInfinity);
+        shift(colors.g, hn::ConcatUpperUpper(kFourIntegers, rg23, rg01), kInfinity);
+        shift(colors.b, hn::ConcatLowerLower(kFourIntegers, ba23, ba01), kInfinity);
+        shift(colors.a, hn::ConcatUpperUpper(kFourIntegers, ba23, ba01), 1.0F);
     }
 }
 

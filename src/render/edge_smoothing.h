@@ -9,6 +9,7 @@
 #include "base/lanes.h"
 #include "film/film.h"
 #include "lines/segment.h"
+#include "render/corner_shares.h"
 #include "render/tiles.h"
 
 namespace ink {
@@ -41,6 +42,8 @@ class EdgeSmoothing {
     void begin(const Tile& tile);
     /// `left` and `right` are the colours of the segment's two sides.
     void add(const Segment& segment, const PixelColor& left, const PixelColor& right);
+    /// Segments wait for others; after the last one has been added, this takes in what is left.
+    void finish();
 
     /// Adds what there is to the block with pixel (x, y), which lies in the tile; its pixels on the
     /// tile's fringe are left as they are.
@@ -59,6 +62,7 @@ class EdgeSmoothing {
     }
     ColorShift shift_at(int x, int y) const;
     ColorShift& shift_of(int x, int y);
+    void spread(int k);
 
     int q_;
     Tile tile_{};
@@ -67,6 +71,10 @@ class EdgeSmoothing {
     using ShiftBlock = std::array<ColorShift, kLanes>;
     std::vector<ShiftBlock> shifts_;
     std::vector<std::uint8_t> touched_;
+    int waiting_ = 0;  ///< segments
+    SegmentEnds ends_{};
+    std::array<PixelColor, kLanes> changes_{};  ///< from their left to their right
+    CornerShares shares_;
 };
 
 /// Finishes the fringe of tile `index` of a raster of tiles, `across` in a row, once all tiles are

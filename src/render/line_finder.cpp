@@ -305,9 +305,11 @@ void LineFinder::find_tones() {
 
 /// Keeps the segments at hand, and smooths the shading along them.
 void LineFinder::keep() {
-    for (Segment& segment : segments_) {
-        edges_.apply_distance(segment);
-        segment.gap = gap_behind(segment);
+    if (edges_.cues_depth()) {
+        for (Segment& segment : segments_) edges_.apply_distance(segment);
+    }
+    if (edges_.halo_px > 0.0F && front_) {
+        for (Segment& segment : segments_) segment.gap = gap_behind(segment);
     }
     if (keeps_segments_) {
         found_.segments.insert(found_.segments.end(), segments_.begin(), segments_.end());
@@ -338,11 +340,12 @@ void LineFinder::smooth() {
         if (!segment.spans_cell || segment.type == LineType::mesh) continue;
         smoothing_.add(segment, color(segment.left_sample), color(segment.right_sample));
     }
+    smoothing_.finish();
 }
 
-/// Zero where there are no halos, where the background is what lies behind, or nothing does.
+/// Zero where the background is what lies behind, or nothing does.
 float LineFinder::gap_behind(const Segment& segment) const {
-    if (edges_.halo_px <= 0.0F || !front_ || segment.level > 0) return 0.0F;
+    if (segment.level > 0) return 0.0F;
     const std::uint32_t far = segment.left_in_front ? segment.right_sample : segment.left_sample;
     if (grid_.id[far] == kBackground) return 0.0F;
     return std::max(grid_.t[far] - segment.t, 0.0F);

@@ -1,0 +1,118 @@
+#include "render/corner_shares.h"
+
+// Everything between the two namespace macros is built once for each instruction set.
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "render/corner_shares.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace ink::HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+using Floats = hn::CappedTag<float, kLanes>;
+using Integers = hn::RebindToSigned<Floats>;
+using Number = hn::Vec<Floats>;
+constexpr Floats kFloats;
+constexpr Integers kIntegers;
+constexpr int kStep = static_cast<int>(hn::MaxLanes(Floats()));
+
+HWY_INLINE Number set(float value) { return hn::Set(kFloats, value); }
+HWY_INLINE Number load(const Lanes<float>& lanes, int first) {
+    return hn::Load(kFloats, lanes.data() + first);
+}
+
+/// square_coverage (lines/coverage.h), a normal a lane.
+class SquareCoverage {
+  public:
+    HWY_INLINE SquareCoverage(Number nx, Number ny) {
+        const Number wide = hn::Max(hn::Abs(nx), hn::Abs(ny));
+        const Number narrow = hn::Min(hn::Abs(nx), hn::Abs(ny));
+        const Number half = set(0.5F);
+        reach_ = hn::Mul(half, hn::Add(wide, narrow));
+        flat_ = hn::Mul(half, hn::Sub(wide, narrow));
+        slope_ = hn::Div(set(1.0F), wide);
+        corner_ = hn::Div(half, hn::Max(hn::Mul(wide, narrow), set(1e-6F)));
+    }
+    HWY_INLINE Number operator()(Number inside) const {
+        const Number off = hn::Min(hn::Abs(inside), reach_);
+        const Number rest = hn::Sub(reach_, off);
+        const Number flat = hn::Sub(set(0.5F), hn::Mul(off, slope_));
+        const Number corner = hn::Mul(hn::Mul(rest, rest), corner_);
+        const Number outer = hn::IfThenElse(hn::Le(off, flat_), flat, corner);
+        const auto is_inside = hn::Ge(inside, hn::Zero(kFloats));
+        return hn::IfThenElse(is_inside, hn::Sub(set(1.0F), outer), outer);
+    }
+
+  private:
+    Number reach_, flat_, slope_, corner_;
+};
+
+HWY_INLINE void find_shares(const SegmentEnds& segments, float q, int i, CornerShares& shares) {
+    const Number zero = hn::Zero(kFloats);
+    const Number half = set(0.5F);
+    const Number ax = load(segments.ax, i);
+    const Number ay = load(segments.ay, i);
+    const Number bx = load(segments.bx, i);
+    const Number by = load(segments.by, i);
+    const Number dx = hn::Sub(bx, ax);
+    const Number dy = hn::Sub(by, ay);
+    const Number length = hn::Sqrt(hn::Add(hn::Mul(dx, dx), hn::Mul(dy, dy)));
+    const auto is_segment = hn::Gt(length, zero);
+    const Number divisor = hn::IfThenElse(is_segment, length, set(1.0F));
+    // Towards the segment's left: see Segment.
+    const Number nx = hn::Div(dy, divisor);
+    const Number ny = hn::Neg(hn::Div(dx, divisor));
+    const auto cell = [&](Number a, Number b) {
+        return hn::Floor(hn::Sub(hn::Mul(hn::Mul(hn::Add(a, b), half), set(q)), half));
+    };
+    const Number cell_x = cell(ax, bx);
+    const Number cell_y = cell(ay, by);
+    hn::Store(hn::ConvertTo(kIntegers, cell_x), kIntegers, shares.cell_x.data() + i);
+    hn::Store(hn::ConvertTo(kIntegers, cell_y), kIntegers, shares.cell_y.data() + i);
+
+    // How far a place in the cell, in spacings from its first corner, lies on the left.
+    const Number spacing = set(1.0F / q);
+    const auto to_left = [&](float x, float y) {
+        const auto place = [&](Number first, float inside) {
+            return hn::Mul(hn::Add(hn::Add(first, half), set(inside)), spacing);
+        };
+        return hn::Add(hn::Mul(hn::Sub(place(cell_x, x), ax), nx),
+                       hn::Mul(hn::Sub(place(cell_y, y), ay), ny));
+    };
+    const SquareCoverage covered(nx, ny);
+    const Number quarter = set(0.25F / (q * q));
+    for (int corner = 0; corner < 4; ++corner) {
+        const auto x = static_cast<float>(corner % 2);
+        const auto y = static_cast<float>(corner / 2);
+        const auto on_left = hn::Gt(to_left(x, y), zero);
+        // From the middle of its quarter, in units of that one's side.
+        const Number inside = hn::Mul(to_left(0.5F * x + 0.25F, 0.5F * y + 0.25F), set(2.0F * q));
+        const Number beyond = covered(hn::IfThenElse(on_left, hn::Neg(inside), inside));
+        const Number area = hn::IfThenElseZero(is_segment, hn::Mul(beyond, quarter));
+        hn::Store(hn::IfThenElse(on_left, area, hn::Neg(area)), kFloats,
+                  shares.area[static_cast<std::size_t>(corner)].data() + i);
+    }
+}
+
+void find_all_shares(const SegmentEnds& segments, float q, CornerShares& shares) {
+    for (int i = 0; i < kLanes; i += kStep) find_shares(segments, q, i, shares);
+}
+
+}  // namespace ink::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+
+namespace ink {
+
+HWY_EXPORT(find_all_shares);
+
+void find_corner_shares(const SegmentEnds& segments, int lattice, CornerShares& shares) {
+    HWY_DYNAMIC_DISPATCH(find_all_shares)(segments, static_cast<float>(lattice), shares);
+}
+
+}  // namespace ink
+
+#endif
