@@ -123,7 +123,7 @@ TEST(Representation, MakesPartsOfAnyLevel) {
 
 TEST(Representation, ColoursByChainWhereAtomsAreMany) {
     Molecule m = small_complex();
-    m.copies.resize(1500);  // 10,500 atoms
+    m.units = {{0, m.atom_count(), std::vector<Copy>(1500)}};  // 10,500 atoms
     EXPECT_EQ(spheres(represent(m, {})).colors[0], category_color(0));
     EXPECT_EQ(spheres(represent(m, {.color_by = "element"})).colors[0], element(7).color);
     m.chains.resize(1);
@@ -191,19 +191,19 @@ TEST(Bonds, AreThoseThatEveryPairOfAtomsWouldGive) {
         }
     }
     EXPECT_GT(expected.size(), 1000U);
-    EXPECT_EQ(bonds_by_distance(m), expected);
+    EXPECT_EQ(bonds_by_distance(m.positions, m.elements), expected);
 }
 
 TEST(Bonds, LinkNeitherHydrogensNorAtomsInOnePlace) {
     Molecule m;
     m.positions = {{0, 0, 0}, {0.7, 0, 0}, {0, 0.96, 0}, {0, 0.96, 0}};
     m.elements = {1, 1, 8, 8};
-    EXPECT_EQ(bonds_by_distance(m), (std::vector<Bond>{{0, 2}, {0, 3}, {1, 2}, {1, 3}}));
+    EXPECT_EQ(bonds_by_distance(m.positions, m.elements), (std::vector<Bond>{{0, 2}, {0, 3}, {1, 2}, {1, 3}}));
 }
 
 TEST(Bonds, TakeNoTimeWithoutEndWhereAllAtomsCrowdTogether) {
     Molecule m = carbon_gas(20'000, 1e-3);
-    EXPECT_TRUE(bonds_by_distance(m).empty());
+    EXPECT_TRUE(bonds_by_distance(m.positions, m.elements).empty());
 }
 
 TEST(Representation, DrawsBallsAndSticks) {

@@ -71,15 +71,37 @@ inline std::vector<Object> random_objects(unsigned seed, int spheres, int triang
     return {sphere_object(std::move(balls)), mesh_object(std::move(vertices), std::move(indices))};
 }
 
-/// The same with the spheres there four times: as they are, turned and moved.
+/// Four places: as things are, turned and moved.
+inline std::vector<Copy> four_copies() {
+    return {{{.rotation = {1, 0, 0, 0, 1, 0, 0, 0, 1}, .shift = {}}, 0},
+            {{.rotation = {0, -1, 0, 1, 0, 0, 0, 0, 1}, .shift = {0.5, 0.25, -0.5}}, 1},
+            {{.rotation = {0.8, 0, 0.6, 0, 1, 0, -0.6, 0, 0.8}, .shift = {0.25, -0.5, 0.75}}, 2},
+            {{.rotation = {-1, 0, 0, 0, -1, 0, 0, 0, 1}, .shift = {1.5, 1, 0.25}}, 3}};
+}
+
+/// The same with the spheres there four times.
 inline std::vector<Object> random_copies(unsigned seed, int spheres, int triangles) {
     std::vector<Object> objects = random_objects(seed, spheres, triangles);
-    auto& shape = std::get<Spheres>(objects[0].shape);
-    shape.copies = {{.rotation = {1, 0, 0, 0, 1, 0, 0, 0, 1}, .shift = {}},
-                    {.rotation = {0, -1, 0, 1, 0, 0, 0, 0, 1}, .shift = {0.5, 0.25, -0.5}},
-                    {.rotation = {0.8, 0, 0.6, 0, 1, 0, -0.6, 0, 0.8}, .shift = {0.25, -0.5, 0.75}},
-                    {.rotation = {-1, 0, 0, 0, -1, 0, 0, 0, 1}, .shift = {1.5, 1, 0.25}}};
+    std::get<Spheres>(objects[0].shape).copies = four_copies();
     return objects;
+}
+
+/// Cylinders without caps between random points, four times.
+inline Object copied_sticks(unsigned seed, int count) {
+    std::mt19937 random(seed);
+    Glyphs sticks;
+    sticks.shape = {.kind = GlyphKind::frustum, .capped = false};
+    for (int i = 0; i < count; ++i) {
+        const Vec3d from = to_double(uniform_point(random));
+        const Vec3d way = to_double(uniform_point(random)) * 0.5;
+        sticks.placements.push_back(placement_between(from, from + way, 0.02 + 0.08 * i / count));
+    }
+    sticks.copies = four_copies();
+    Object object;
+    object.name = "sticks";
+    object.kind = ObjectKind::shape;
+    object.shape = std::move(sticks);
+    return object;
 }
 
 /// The objects moved and scaled in the world: p -> p * scale + shift.

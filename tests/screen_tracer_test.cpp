@@ -500,6 +500,14 @@ TEST_P(EveryScreenShape, IsHitWhereItsEquationSays) {
     }
 }
 
+TEST_P(EveryScreenShape, IsHitInAllItsCopies) {
+    std::mt19937 random(13);
+    Object original = random_glyphs(GetParam().shape, 40, 0.4, random);
+    std::get<Glyphs>(original.shape).copies = four_copies();
+    const Seen seen({std::move(original)}, {}, {192, 160}, make_double_tracer);
+    expect_same_hits(seen, seen.random_points(3, 2000));
+}
+
 TEST_P(EveryScreenShape, IsHitWhereItsEquationSaysAtAnySize) {
     std::mt19937 random(12);
     std::vector<Object> objects;

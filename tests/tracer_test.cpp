@@ -94,16 +94,41 @@ TEST_P(EveryTracerPath, HitsCopiesWhereBruteForceHitsThem) {
     expect_hits_of_brute_force(Scene(random_copies(7, 100, 200)), GetParam(), 4);
 }
 
-TEST(Tracer, CrossesCopiesAsTheSpheresThatTheyStandFor) {
-    const Scene scene(random_copies(7, 60, 0));
-    const auto embree = make_embree_tracer(scene);
-    const auto oracle = make_brute_force_tracer(scene);
+/// Copies of sticks, as copies or written out.
+Scene many_sticks(bool written_out) {
+    Object object = copied_sticks(7, 60);
+    if (written_out) {
+        auto& sticks = std::get<Glyphs>(object.shape);
+        std::vector<Placement> all;
+        for (std::size_t i = 0; i < sticks.count(); ++i) all.push_back(sticks.at(i));
+        sticks.placements = std::move(all);
+        sticks.copies.clear();
+    }
+    return Scene({std::move(object)});
+}
+
+TEST_P(EveryTracerPath, HitsCopiesOfGlyphsAsThoseThatTheyStandFor) {
+    const Scene copies = many_sticks(false);
+    const Scene written_out = many_sticks(true);
+    const auto rays = random_rays(11, 400);
+    for (const Coherence coherence : {Coherence::coherent, Coherence::incoherent}) {
+        const auto expected = trace(*make_embree_tracer(written_out, GetParam()), rays, coherence);
+        const auto seen = trace(*make_embree_tracer(copies, GetParam()), rays, coherence);
+        const Agreement result = compare(expected, seen);
+        EXPECT_GT(result.hits, result.rays / 4);
+        EXPECT_LE(result.different, 4) << "of " << result.rays;
+        EXPECT_LT(result.t_error, 2e-5F);
+        EXPECT_LT(result.normal_error, 2e-2F);
+    }
+}
+
+void expect_same_crossings(const Tracer& tracer, const Tracer& oracle) {
     std::size_t crossings = 0;
     for (const RayPacket& rays : random_rays(5, 20)) {
         SurfaceHits hits;
         SurfaceHits expected;
-        embree->cross(rays, hits);
-        oracle->cross(rays, expected);
+        tracer.cross(rays, hits);
+        oracle.cross(rays, expected);
         for (std::size_t i = 0; i < kLanes; ++i) {
             std::vector<std::uint32_t> primitives;
             std::vector<std::uint32_t> wanted;
@@ -115,7 +140,18 @@ TEST(Tracer, CrossesCopiesAsTheSpheresThatTheyStandFor) {
             crossings += wanted.size();
         }
     }
-    EXPECT_GT(crossings, 1000U);
+    EXPECT_GT(crossings, 400U);
+}
+
+TEST(Tracer, CrossesCopiesAsTheSpheresThatTheyStandFor) {
+    const Scene scene(random_copies(7, 60, 0));
+    expect_same_crossings(*make_embree_tracer(scene), *make_brute_force_tracer(scene));
+}
+
+TEST(Tracer, CrossesCopiesAsTheGlyphsThatTheyStandFor) {
+    const Scene copies = many_sticks(false);
+    const Scene written_out = many_sticks(true);
+    expect_same_crossings(*make_embree_tracer(copies), *make_embree_tracer(written_out));
 }
 
 TEST_P(EveryTracerPath, IsBlockedWhereBruteForceIs) {

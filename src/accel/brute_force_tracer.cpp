@@ -175,9 +175,8 @@ void intersect(const Ray& ray, const UnitShape& shape, const Placement& place,
 }
 
 void intersect(const Ray& ray, const Glyphs& glyphs, std::uint32_t object, Hit& best) {
-    for (std::size_t i = 0; i < glyphs.placements.size(); ++i) {
-        intersect(ray, glyphs.shape, glyphs.placements[i], static_cast<std::uint32_t>(i), object,
-                  best);
+    for (std::size_t i = 0; i < glyphs.count(); ++i) {
+        intersect(ray, glyphs.shape, glyphs.at(i), static_cast<std::uint32_t>(i), object, best);
     }
 }
 

@@ -117,7 +117,9 @@ struct GlyphParts {
 
     std::size_t count() const { return shape.placements.size(); }
     std::uint32_t primitive(std::uint32_t i) const { return i; }
-    Bounds3f bounds(std::size_t i) const { return glyph_bounds(shape.shape, shape.placements[i]); }
+    Bounds3f bounds(std::size_t i, std::size_t copy = 0) const {
+        return glyph_bounds(shape.shape, shape.at(copy * shape.placements.size() + i));
+    }
     void put(std::uint32_t i, int lane, GlyphLanes& lanes) const {
         const Placement& placement = shape.placements[i];
         ink::put(lanes.origin, lane, placement.origin);
@@ -197,25 +199,25 @@ void append(const Parts& parts, std::uint32_t object, std::vector<PartLanes>& pa
     });
 }
 
-/// The clusters of the spheres that were appended last become those of the first copy, and the
+/// The clusters of the primitives that were appended last become those of the first copy, and the
 /// others follow.
-void append_copies(const Spheres& shape, Clusters& all, std::vector<Bounds3f>& boxes) {
-    const std::size_t a_copy = packets_for(shape.spheres.size());
+template <class Parts>
+void append_copies(const Parts& parts, Clusters& all, std::vector<Bounds3f>& boxes) {
+    const std::vector<Copy>& copies = parts.shape.copies;
+    if (copies.empty()) return;
+    const std::size_t a_copy = packets_for(parts.count());
     const std::size_t first = all.clusters.size() - a_copy;
     const std::size_t first_copy = all.copies.size();
-    for (std::size_t k = 0; k < shape.copies.size(); ++k) {
-        all.copies.push_back(
-            {shape.copies[k], static_cast<std::uint32_t>(k * shape.spheres.size())});
+    for (std::size_t k = 0; k < copies.size(); ++k) {
+        all.copies.push_back({copies[k].motion, static_cast<std::uint32_t>(k * parts.count())});
     }
-    all.clusters.resize(first + a_copy * shape.copies.size());
+    all.clusters.resize(first + a_copy * copies.size());
     boxes.resize(all.clusters.size());
     for (std::size_t c = 0; c < a_copy; ++c) {
         all.clusters[first + c].copy = static_cast<std::uint32_t>(first_copy);
     }
-    const SphereParts parts{shape};
     parallel_ranges(
-        a_copy * (shape.copies.size() - 1), kGrain / kLanes,
-        [&](std::size_t begin, std::size_t end) {
+        a_copy * (copies.size() - 1), kGrain / kLanes, [&](std::size_t begin, std::size_t end) {
             for (std::size_t k = begin; k < end; ++k) {
                 const std::size_t copy = 1 + k / a_copy;
                 Cluster cluster = all.clusters[first + k % a_copy];
@@ -257,6 +259,23 @@ SphereLanes moved(const SphereLanes& spheres, const Motion& motion) {
     return out;
 }
 
+GlyphLanes moved(const GlyphLanes& glyphs, const Motion& motion) {
+    const auto at = [](const Points& points, int i) {
+        return Vec3f{points.x[i], points.y[i], points.z[i]};
+    };
+    GlyphLanes out;
+    for (int i = 0; i < kLanes; ++i) {
+        const Placement there = moved(Placement{at(glyphs.x_axis, i), at(glyphs.y_axis, i),
+                                                at(glyphs.z_axis, i), at(glyphs.origin, i)},
+                                      motion);
+        put(out.x_axis, i, there.x_axis);
+        put(out.y_axis, i, there.y_axis);
+        put(out.z_axis, i, there.z_axis);
+        put(out.origin, i, there.origin);
+    }
+    return out;
+}
+
 Clusters::Clusters(const Scene& scene) : unit_shapes(scene.objects().size()) {
     std::vector<Bounds3f> boxes;
     for (std::uint32_t i = 0; i < scene.objects().size(); ++i) {
@@ -264,13 +283,14 @@ Clusters::Clusters(const Scene& scene) : unit_shapes(scene.objects().size()) {
         if (!has_screen_form(shape)) continue;
         if (const auto* balls = std::get_if<Spheres>(&shape)) {
             append(SphereParts{*balls}, i, spheres, *this, boxes);
-            if (!balls->copies.empty()) append_copies(*balls, *this, boxes);
+            append_copies(SphereParts{*balls}, *this, boxes);
         } else if (const auto* mesh = std::get_if<Mesh>(&shape)) {
             append(TriangleParts{*mesh}, i, triangles, *this, boxes);
         } else if (const auto* hexahedra = std::get_if<Hexahedra>(&shape)) {
             append(SolidParts{*hexahedra}, i, solids, *this, boxes);
         } else if (const auto* placed = std::get_if<Glyphs>(&shape)) {
             append(GlyphParts{*placed}, i, glyphs, *this, boxes);
+            append_copies(GlyphParts{*placed}, *this, boxes);
             unit_shapes[i] = placed->shape;
         }
     }

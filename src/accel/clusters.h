@@ -63,7 +63,7 @@ bool has_screen_form(const Shape& shape);
 
 /// The primitives of the scene's shapes with screen forms in clusters along a Morton curve, object
 /// by object, so that clusters that follow each other are near each other too, and a tree of boxes
-/// above them. Copies of spheres have clusters and boxes of their own, and share all else.
+/// above them. Copies have clusters and boxes of their own, and share all else.
 struct Clusters {
     std::vector<Cluster> clusters;
     std::vector<std::uint32_t> order;  ///< primitives, cluster by cluster
@@ -86,7 +86,8 @@ struct Clusters {
     explicit Clusters(const Scene& scene);
 };
 
-/// The spheres of a cluster where its copy is.
+/// The primitives of a cluster where its copy is.
 SphereLanes moved(const SphereLanes& spheres, const Motion& motion);
+GlyphLanes moved(const GlyphLanes& glyphs, const Motion& motion);
 
 }  // namespace ink

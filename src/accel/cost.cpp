@@ -29,7 +29,7 @@ double stored(const Mesh& m) {
            size_of(m.edge_flags);
 }
 double stored(const Glyphs& g) {
-    return size_of(g.placements) + size_of(g.colors) + size_of(g.parts);
+    return size_of(g.placements) + size_of(g.colors) + size_of(g.parts) + size_of(g.copies);
 }
 double stored(const Hexahedra& h) {
     return size_of(h.corners) + size_of(h.colors) + size_of(h.parts);
@@ -74,9 +74,13 @@ Build build_of(const Mesh& m) {
     return {count * (sizeof(TriangleLanes) / double{kLanes} + kKeyBytes + kClusterBytes),
             1e-9 * kTriangleNs * count};
 }
-template <class Others>
-Build build_of(const Others& shape) {
-    const auto count = static_cast<double>(primitive_count(shape));
+Build build_of(const Glyphs& g) {
+    const auto once = static_cast<double>(g.placements.size());
+    return {once * kGlyphBytes + static_cast<double>(g.count()) * kClusterBytes,
+            1e-9 * kGlyphNs * once};
+}
+Build build_of(const Hexahedra& h) {
+    const auto count = static_cast<double>(h.corners.size());
     return {count * kGlyphBytes, 1e-9 * kGlyphNs * count};
 }
 

@@ -92,8 +92,7 @@ struct NearestHits {
     }
 };
 
-/// The copies of spheres, which are Embree's instances. It tells hits on them in terms of what they
-/// are copies of.
+/// Copies, which are Embree's instances. It tells hits on them in terms of what they are copies of.
 struct Instances {
     struct Copy {
         Motion motion;
@@ -196,8 +195,11 @@ struct UserShape {
     static void intersect(const RTCIntersectFunctionNArguments* args) {
         const auto& shape = *static_cast<const Shape*>(args->geometryUserPtr);
         const Meet meet(shape, args->primID);
-        SurfaceHits* const all = static_cast<Query*>(args->context)->hits;
-        NearestHits* const nearest = static_cast<Query*>(args->context)->nearest;
+        const auto& query = *static_cast<const Query*>(args->context);
+        SurfaceHits* const all = query.hits;
+        NearestHits* const nearest = query.nearest;
+        const unsigned instance = query.instID[0];
+        const std::uint32_t primitive = query.instances->primitive(instance, args->primID);
         const unsigned width = args->N;
         RTCRayN* rays = RTCRayHitN_RayN(args->rayhit, width);
         RTCHitN* hits = RTCRayHitN_HitN(args->rayhit, width);
@@ -217,7 +219,7 @@ struct UserShape {
             const auto t = static_cast<float>(hit->t);
             if (nearest == nullptr) {
                 far = t;
-            } else if (nearest->take(RTCRayN_id(rays, width, i), t, args->geomID, args->primID)) {
+            } else if (nearest->take(RTCRayN_id(rays, width, i), t, args->geomID, primitive)) {
                 far = t + kTouching;
             } else {
                 continue;
@@ -230,7 +232,7 @@ struct UserShape {
             RTCHitN_v(hits, width, i) = 0.0F;
             RTCHitN_primID(hits, width, i) = args->primID;
             RTCHitN_geomID(hits, width, i) = args->geomID;
-            RTCHitN_instID(hits, width, i, 0) = RTC_INVALID_GEOMETRY_ID;
+            RTCHitN_instID(hits, width, i, 0) = instance;
         }
     }
 
@@ -238,10 +240,14 @@ struct UserShape {
                            const RTCIntersectFunctionNArguments& args,
                            std::vector<SurfaceHit>& hits) {
         constexpr double kStep = 1e-9;  // in a scene of size 1
+        const auto& query = *static_cast<const Query*>(args.context);
+        const unsigned instance = query.instID[0];
         double near = 0.0;
         while (const auto hit = meet(ray, near, double{kInfinity})) {
-            hits.push_back({static_cast<float>(hit->t), to_float(normalize(hit->normal)), 0.0F,
-                            0.0F, args.primID, args.geomID});
+            const Vec3f normal = to_float(normalize(hit->normal));
+            hits.push_back({static_cast<float>(hit->t), query.instances->normal(instance, normal),
+                            0.0F, 0.0F, query.instances->primitive(instance, args.primID),
+                            args.geomID});
             near = hit->t + kStep * (1.0 + hit->t);
         }
     }
@@ -471,30 +477,29 @@ class EmbreeTracer final : public Tracer {
             [&](const auto& shape) { return make_geometry(device_.get(), shape); }, object.shape);
         check(device_.get());
         rtcCommitGeometry(geometry.get());
-        const auto* spheres = std::get_if<Spheres>(&object.shape);
-        if (spheres != nullptr && !spheres->copies.empty()) {
-            return attach_copies(*spheres, geometry.get(), index);
-        }
+        const CopyNumbering numbers = numbering(object.shape);
+        if (!numbers.copies.empty()) return attach_copies(numbers, geometry.get(), index);
         rtcAttachGeometryByID(scene_.get(), geometry.get(), index);
     }
 
     /// One hierarchy, placed by each motion.
-    void attach_copies(const Spheres& spheres, RTCGeometry geometry, std::uint32_t index) {
+    void attach_copies(const CopyNumbering& numbers, RTCGeometry geometry, std::uint32_t index) {
         SceneHandle original(rtcNewScene(device_.get()));
         rtcSetSceneFlags(original.get(), RTC_SCENE_FLAG_ROBUST | kFilterWithQuery);
         rtcAttachGeometryByID(original.get(), geometry, index);
         rtcCommitScene(original.get());
-        for (std::size_t k = 0; k < spheres.copies.size(); ++k) {
+        for (std::size_t k = 0; k < numbers.copies.size(); ++k) {
+            const Motion& motion = numbers.copies[k].motion;
             const GeometryHandle instance(
                 rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_INSTANCE));
             rtcSetGeometryInstancedScene(instance.get(), original.get());
             rtcSetGeometryTransform(instance.get(), 0, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR,
-                                    to_columns(spheres.copies[k]).data());
+                                    to_columns(motion).data());
             rtcCommitGeometry(instance.get());
             const auto number = static_cast<unsigned>(instances_.copies.size());
             rtcAttachGeometryByID(scene_.get(), instance.get(), instances_.first_id + number);
             instances_.copies.push_back(
-                {spheres.copies[k], static_cast<std::uint32_t>(k * spheres.spheres.size())});
+                {motion, static_cast<std::uint32_t>(k * numbers.originals)});
         }
         originals_.push_back(std::move(original));
     }

@@ -528,7 +528,15 @@ void prepare(const Basis& basis, const Clusters& clusters, const Cluster& cluste
         }
         case ClusterKind::glyphs:
             packet.shape = clusters.unit_shapes[cluster.object];
-            HWY_DYNAMIC_DISPATCH(prepare_glyphs)(basis, clusters.glyphs[cluster.packet], packet);
+            if (cluster.copy == kNoCopy) {
+                HWY_DYNAMIC_DISPATCH(prepare_glyphs)
+                (basis, clusters.glyphs[cluster.packet], packet);
+            } else {
+                HWY_DYNAMIC_DISPATCH(prepare_glyphs)
+                (basis,
+                 moved(clusters.glyphs[cluster.packet], clusters.copies[cluster.copy].motion),
+                 packet);
+            }
             break;
     }
     empty_unused(cluster.count, packet.bounds);

@@ -20,7 +20,7 @@ std::size_t centre_count(const Shape& shape) {
 }
 
 Vec3d centre(const Spheres& shape, std::size_t i) { return to_double(shape.at(i).centre); }
-Vec3d centre(const Glyphs& shape, std::size_t i) { return to_double(shape.placements[i].origin); }
+Vec3d centre(const Glyphs& shape, std::size_t i) { return to_double(shape.at(i).origin); }
 Vec3d centre(const Hexahedra& shape, std::size_t i) {
     return to_double(hexahedron_bounds(shape.corners[i]).centre());
 }

@@ -77,13 +77,12 @@ std::array<double, 4> supports(const Scene& scene, const std::array<Vec3f, 4>& n
         } else if (const auto* mesh = std::get_if<Mesh>(&object.shape)) {
             reduce_points(mesh->vertices.size(), [&](std::size_t i) { return mesh->vertices[i]; });
         } else if (const auto* glyphs = std::get_if<Glyphs>(&object.shape)) {
-            const std::size_t count = glyphs->placements.size();
-            parallel_ranges(count, kGrain, [&](std::size_t begin, std::size_t end) {
+            parallel_ranges(glyphs->count(), kGrain, [&](std::size_t begin, std::size_t end) {
                 std::array<float, 4> part{kInfinity, kInfinity, kInfinity, kInfinity};
                 for (std::size_t i = begin; i < end; ++i) {
                     for (std::size_t k = 0; k < 4; ++k) {
                         const Vec3d opposite = to_double(-normals[k]);
-                        const double far = support(glyphs->shape, glyphs->placements[i], opposite);
+                        const double far = support(glyphs->shape, glyphs->at(i), opposite);
                         part[k] = std::min(part[k], static_cast<float>(-far));
                     }
                 }

@@ -228,6 +228,12 @@ void MoleculeBuilder::leave_out_without_radius(const DataSettings& settings,
     if (molecule_.atom_count() == 0) throw Error("no atom has a radius; set one with --radius");
 }
 
+namespace {
+
+[[noreturn]] void refuse_empty_clip() { throw Error("--clip: no atom is inside the box"); }
+
+}  // namespace
+
 void MoleculeBuilder::select(const DataSettings& settings) {
     if (settings.select.empty()) return;
     const auto keep = Selection::parse(settings.select).evaluate(molecule_);
@@ -240,7 +246,6 @@ void MoleculeBuilder::select(const DataSettings& settings) {
 }
 
 void MoleculeBuilder::assemble(const DataSettings& settings) {
-    if (settings.assembly.empty()) return;
     const auto found = std::ranges::find(assemblies_, settings.assembly, &Assembly::name);
     if (found == assemblies_.end()) {
         std::string names;
@@ -257,14 +262,12 @@ void MoleculeBuilder::assemble(const DataSettings& settings) {
     if (ink::atom_count(molecule_, *found) > kMostAtoms) {
         throw Error("--assembly: has more than 2^31 atoms; repair its operators");
     }
-    // Sticks may join copies, and a box may cut them in different places.
-    const bool as_copies = is_repetition(*found) && settings.clip.everything() &&
-                           settings.representation == Representation::spheres;
-    molecule_ = as_copies ? repeated(molecule_, *found) : assembled(molecule_, *found);
-    if (molecule_.atom_count() == 0) {
+    if (ink::atom_count(molecule_, *found) == 0) {
         throw Error(
             fmt::format("--assembly: '{}' copies no chain that is drawn", settings.assembly));
     }
+    molecule_ = assembled(molecule_, *found, settings.clip);
+    if (molecule_.atom_count() == 0) refuse_empty_clip();
 }
 
 void MoleculeBuilder::clip(const DataSettings& settings) {
@@ -273,7 +276,7 @@ void MoleculeBuilder::clip(const DataSettings& settings) {
     for (std::size_t i = 0; i < keep.size(); ++i) {
         keep[i] = settings.clip.holds(molecule_.positions[i]) ? 1 : 0;
     }
-    if (std::ranges::count(keep, 1) == 0) throw Error("--clip: no atom is inside the box");
+    if (std::ranges::count(keep, 1) == 0) refuse_empty_clip();
     molecule_ = filtered(molecule_, keep);
 }
 
@@ -316,10 +319,18 @@ FileContents MoleculeBuilder::finish(const std::filesystem::path& file, std::str
     }
     leave_out_without_radius(options.data, contents.warnings);
     select(options.data);
-    assemble(options.data);
-    clip(options.data);
+    if (options.data.assembly.empty()) {
+        clip(options.data);
+    } else {
+        assemble(options.data);
+    }
     contents.objects = represent(molecule_, options.data);
-    if (options.facts) contents.objects.front().facts = molecule_facts(std::move(molecule_));
+    if (options.facts) {
+        std::vector<FactSource> facts = molecule_facts(std::move(molecule_));
+        for (std::size_t u = 0; u < facts.size(); ++u) {
+            contents.objects[u].facts = std::move(facts[u]);
+        }
+    }
     return contents;
 }
 

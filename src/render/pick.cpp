@@ -22,11 +22,12 @@ std::string_view kind_of(const Object& object) {
 /// What the file says, or else what the scene knows.
 Facts facts_of(const Object& object, std::uint32_t primitive) {
     Facts facts;
-    const std::size_t source = source_of(object.shape, primitive);
+    const CopyNumbering numbers = numbering(object.shape);
+    const std::size_t source = numbers.source(primitive);
     if (object.facts) facts = object.facts(static_cast<std::uint32_t>(source));
-    if (const auto* spheres = std::get_if<Spheres>(&object.shape)) {
+    if (!numbers.copies.empty()) {
         for (auto& [name, value] : facts) {
-            if (name == "chain") value += copy_suffix(spheres->copy(primitive));
+            if (name == "chain") value += copy_suffix(numbers.copy(primitive).number);
         }
     }
     const auto knows = [&](std::string_view name) {

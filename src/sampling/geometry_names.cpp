@@ -25,14 +25,14 @@ GeometryNames::GeometryNames(const Scene& scene, std::optional<IdLevel> level) {
     const LineIds ids(scene, level);
     for (std::size_t k = 0; k < scene.objects().size(); ++k) {
         const Object& object = scene.objects()[k];
+        const CopyNumbering numbers = numbering(object.shape);
         ObjectNames names{.first = ids.first(k),
                           .level = ids.level(k),
                           .name = object.name,
-                          .part_names = object.part_names};
-        if (const auto* spheres = std::get_if<Spheres>(&object.shape)) {
-            names.parts_a_copy = spheres->parts_a_copy;
-            names.primitives_a_copy = static_cast<std::uint32_t>(spheres->spheres.size());
-        }
+                          .part_names = object.part_names,
+                          .copies = {numbers.copies.begin(), numbers.copies.end()},
+                          .originals = numbers.originals,
+                          .parts_a_copy = numbers.parts_a_copy};
         if (names.level == IdLevel::primitive && !std::holds_alternative<Mesh>(object.shape)) {
             names.parts = std::visit([](const auto& shape) { return shape.parts; }, object.shape);
             names.elements = object.elements;
@@ -54,11 +54,10 @@ GeometryName GeometryNames::operator()(GeometryId id) const {
     if (object.level == IdLevel::object) name.index.reset();
     std::optional<std::uint32_t> part;
     if (object.level == IdLevel::part) part = index;
-    const std::uint32_t a_copy = std::max(object.primitives_a_copy, 1U);
-    const std::uint32_t copy = object.primitives_a_copy == 0 ? 0 : index / a_copy;
-    const std::uint32_t source = object.primitives_a_copy == 0 ? index : index % a_copy;
-    if (source < object.parts.size()) part = object.parts[source] + copy * object.parts_a_copy;
-    if (part) name.part = name_of_part(object.part_names, object.parts_a_copy, *part);
+    const CopyNumbering numbers = object.numbering();
+    const std::size_t source = numbers.source(index);
+    if (source < object.parts.size()) part = object.parts[source] + numbers.first_part(index);
+    if (part) name.part = name_of_part(object.part_names, numbers.parts_a_copy, *part);
     if (source < object.elements.size()) name.element = element(object.elements[source]).symbol;
     return name;
 }

@@ -39,10 +39,13 @@ class GeometryNames {
         IdLevel level;
         std::string name;
         std::vector<std::string> part_names;
-        std::uint32_t parts_a_copy = 0;        ///< of spheres
-        std::uint32_t primitives_a_copy = 0;   ///< of spheres; 0: there are no copies
+        std::vector<Copy> copies{};
+        std::size_t originals = 0;
+        std::uint32_t parts_a_copy = 0;
         std::vector<std::uint32_t> parts{};    ///< of primitives
         std::vector<std::uint8_t> elements{};  ///< atomic numbers, of primitives
+
+        CopyNumbering numbering() const { return {copies, originals, parts_a_copy}; }
     };
     std::vector<ObjectNames> objects_;
 };

@@ -59,24 +59,25 @@ void LineIds::add(const Object& object, IdLevel level, GeometryId& next) {
     if (const Groups* own_groups = groups(object, level)) {
         const bool shared = continues && objects_.back().groups != nullptr;
         const GeometryId first = shared ? objects_.back().first : next;
-        const auto* spheres = std::get_if<Spheres>(&object.shape);
-        const std::uint32_t a_copy = spheres == nullptr ? 0 : spheres->parts_a_copy;
-        const std::size_t copies = spheres == nullptr ? 1 : spheres->copy_count();
+        const CopyNumbering numbers = numbering(object.shape);
         const bool of_wholes = level == IdLevel::part && !object.part_wholes.empty();
-        objects_.push_back({first, 0, own_groups, a_copy, of_wholes ? &object.part_wholes : nullptr,
-                            false, level});
+        objects_.push_back({first, 0, own_groups, numbers,
+                            of_wholes ? &object.part_wholes : nullptr, false, level});
+        std::uint32_t last_copy = 0;
+        for (const Copy& copy : numbers.copies) last_copy = std::max(last_copy, copy.number);
         next = std::max(next, first + *std::ranges::max_element(*own_groups) + 1 +
-                                  a_copy * static_cast<GeometryId>(copies - 1));
+                                  numbers.parts_a_copy * last_copy);
     } else if (continues && level != IdLevel::primitive && objects_.back().stride == 0) {
-        objects_.push_back({objects_.back().first, 0, nullptr, 0, nullptr, false, IdLevel::object});
+        objects_.push_back(
+            {objects_.back().first, 0, nullptr, {}, nullptr, false, IdLevel::object});
     } else if (level == IdLevel::primitive) {
         const auto* glyphs = std::get_if<Glyphs>(&object.shape);
         const bool ball = std::holds_alternative<Spheres>(object.shape) ||
                           (glyphs != nullptr && glyphs->shape.kind == GlyphKind::ellipsoid);
-        objects_.push_back({next, 1, nullptr, 0, groups(object, IdLevel::part), ball});
+        objects_.push_back({next, 1, nullptr, {}, groups(object, IdLevel::part), ball});
         next += static_cast<GeometryId>(object.primitive_count());
     } else {
-        objects_.push_back({next, 0, nullptr, 0, nullptr, false, IdLevel::object});
+        objects_.push_back({next, 0, nullptr, {}, nullptr, false, IdLevel::object});
         next += 1;
     }
 }
@@ -94,9 +95,7 @@ GeometryId LineIds::resolve(std::uint32_t object, std::uint32_t primitive) const
     const ObjectIds& own = objects_[object];
     if (own.groups == nullptr) return own.first + own.stride * primitive;
     const auto& groups = *own.groups;
-    if (primitive < groups.size()) return own.first + groups[primitive];
-    const auto a_copy = static_cast<std::uint32_t>(groups.size());
-    return own.first + groups[primitive % a_copy] + primitive / a_copy * own.groups_a_copy;
+    return own.first + groups[own.numbers.source(primitive)] + own.numbers.first_part(primitive);
 }
 
 bool LineIds::of_one_whole(GeometryId a, GeometryId b) const {

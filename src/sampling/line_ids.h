@@ -43,7 +43,7 @@ class LineIds {
         GeometryId first;      ///< of the object's IDs
         std::uint32_t stride;  ///< 1: every primitive has its own; 0: they share one
         const std::vector<std::uint32_t>* groups = nullptr;  ///< instead: an offset a primitive
-        std::uint32_t groups_a_copy = 0;                     ///< offset from copy to copy
+        CopyNumbering numbers{};                             ///< of groups
         /// An ID's whole, by its offset within one copy; null where IDs are no parts of anything.
         const std::vector<std::uint32_t>* wholes = nullptr;
         bool ball = false;  ///< an ID is one sphere

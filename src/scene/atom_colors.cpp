@@ -133,9 +133,8 @@ Coloring color_kinds(const Molecule& molecule, const Kinds& kinds) {
 
 std::string_view usual_coloring(const Molecule& molecule) {
     constexpr std::size_t kMostInElements = 10'000;
-    const std::size_t drawn =
-        molecule.atom_count() * std::max<std::size_t>(molecule.copies.size(), 1);
-    return drawn > kMostInElements && molecule.chains.size() > 1 ? "chain" : "element";
+    return molecule.drawn_count() > kMostInElements && molecule.chains.size() > 1 ? "chain"
+                                                                                  : "element";
 }
 
 Coloring color_atoms(const Molecule& molecule, const DataSettings& settings) {

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <mutex>
 
+#include "base/bounds.h"
 #include "base/parallel.h"
 #include "scene/elements.h"
 
@@ -25,7 +26,7 @@ using Cell = std::array<std::int64_t, 3>;
 /// bucket are told apart by their distance, and memory does not depend on how far atoms reach.
 class CellGrid {
   public:
-    CellGrid(const std::vector<Vec3d>& positions, double side)
+    CellGrid(std::span<const Vec3d> positions, double side)
         : positions_(positions), scale_(1.0 / side) {
         mask_ = std::bit_ceil(std::max<std::size_t>(positions.size(), 1)) - 1;
         begin_.assign(mask_ + 2, 0);
@@ -38,17 +39,16 @@ class CellGrid {
         }
     }
 
-    /// The atoms after `atom` in its cell and those about it, each once, in order.
-    void candidates(std::uint32_t atom, std::vector<std::uint32_t>& found) const {
+    /// The atoms in the cell of a point and those about it, each once, in order.
+    void near(Vec3d point, std::vector<std::uint32_t>& found) const {
         found.clear();
-        const Cell home = cell(positions_[atom]);
-        std::size_t looked_at = 0;
+        const Cell home = cell(point);
         for (std::int64_t k = 0; k < 27; ++k) {
-            const Cell at{home[0] + k % 3 - 1, home[1] + k / 3 % 3 - 1, home[2] + k / 9 - 1};
-            const std::size_t b = bucket(at);
+            const std::size_t b =
+                bucket({home[0] + k % 3 - 1, home[1] + k / 3 % 3 - 1, home[2] + k / 9 - 1});
             for (std::uint32_t n = begin_[b]; n < begin_[b + 1]; ++n) {
-                if (++looked_at > kMostCandidates) break;
-                if (atoms_[n] > atom) found.push_back(atoms_[n]);
+                if (found.size() == kMostCandidates) break;
+                found.push_back(atoms_[n]);
             }
         }
         std::ranges::sort(found);
@@ -71,40 +71,135 @@ class CellGrid {
         return hash & mask_;
     }
 
-    const std::vector<Vec3d>& positions_;
+    std::span<const Vec3d> positions_;
     double scale_;
     std::size_t mask_ = 0;
     std::vector<std::uint32_t> begin_, atoms_;
 };
 
-bool are_bonded(const Molecule& m, std::uint32_t a, std::uint32_t b) {
+double bond_radius(std::uint8_t element) { return atom_radius(RadiiTable::covalent, element); }
+
+/// Whether two atoms are bonded whose places differ by `apart`.
+bool are_bonded(std::uint8_t element_a, std::uint8_t element_b, Vec3d apart) {
     constexpr std::uint8_t kHydrogen = 1;
-    if (m.elements[a] == kHydrogen && m.elements[b] == kHydrogen) return false;
-    const double reach = static_cast<double>(atom_radius(RadiiTable::covalent, m.elements[a])) +
-                         static_cast<double>(atom_radius(RadiiTable::covalent, m.elements[b])) +
-                         kSlack;
-    const Vec3d d = m.positions[a] - m.positions[b];
-    const double squared = dot(d, d);
+    if (element_a == kHydrogen && element_b == kHydrogen) return false;
+    const double reach = bond_radius(element_a) + bond_radius(element_b) + kSlack;
+    const double squared = dot(apart, apart);
     return squared < reach * reach && squared > kNearest * kNearest;
+}
+
+/// Farther apart, no two atoms are bonded.
+double longest_bond(std::span<const std::uint8_t> elements) {
+    double largest = 0.0;
+    for (const std::uint8_t element : elements) largest = std::max(largest, bond_radius(element));
+    return 2.0 * largest + kSlack;
+}
+
+/// One copy of a unit.
+struct Place {
+    std::uint32_t unit;
+    std::uint32_t first_atom;  ///< as CopyBond numbers them
+    Motion motion;
+};
+
+/// What of a unit all its copies share.
+struct UnitAtoms {
+    std::span<const Vec3d> positions;
+    std::span<const std::uint8_t> elements;
+    CellGrid grid;
+    Bounds3d box;  ///< of the places that bonds reach to
+
+    UnitAtoms(const Molecule& m, const Unit& unit, double reach)
+        : positions(std::span(m.positions).subspan(unit.first, unit.count)),
+          elements(std::span(m.elements).subspan(unit.first, unit.count)),
+          grid(positions, reach) {
+        for (const Vec3d& p : positions) {
+            box.add(p - Vec3d{reach, reach, reach});
+            box.add(p + Vec3d{reach, reach, reach});
+        }
+    }
+    Vec3d centre() const { return box.centre(); }
+    double radius() const { return 0.5 * length(box.extent()); }
+    bool reaches(Vec3d p) const {
+        return p.x >= box.lower.x && p.x <= box.upper.x && p.y >= box.lower.y &&
+               p.y <= box.upper.y && p.z >= box.lower.z && p.z <= box.upper.z;
+    }
+};
+
+std::vector<Place> places(const std::vector<Unit>& units) {
+    std::vector<Place> out;
+    for (std::uint32_t u = 0; u < units.size(); ++u) {
+        if (units[u].copies.empty()) out.push_back({u, 0, {}});
+        for (std::size_t k = 0; k < units[u].copies.size(); ++k) {
+            out.push_back(
+                {u, static_cast<std::uint32_t>(k * units[u].count), units[u].copies[k].motion});
+        }
+    }
+    return out;
+}
+
+/// Bonds from atoms of the unit at `here` to those of the one at `there`.
+void find_bonds(const Place& here, const UnitAtoms& own, const Place& there, const UnitAtoms& other,
+                std::vector<std::uint32_t>& near, std::vector<CopyBond>& bonds) {
+    for (std::uint32_t b = 0; b < other.positions.size(); ++b) {
+        const Vec3d p = there.motion(other.positions[b]);
+        const Vec3d at_home = here.motion.back(p);
+        if (!own.reaches(at_home)) continue;
+        own.grid.near(at_home, near);
+        for (const std::uint32_t a : near) {
+            const Vec3d apart = here.motion(own.positions[a]) - p;
+            if (!are_bonded(own.elements[a], other.elements[b], apart)) continue;
+            bonds.push_back({{here.unit, here.first_atom + a}, {there.unit, there.first_atom + b}});
+        }
+    }
 }
 
 }  // namespace
 
-std::vector<Bond> bonds_by_distance(const Molecule& molecule) {
-    double largest = 0.0;
-    for (const std::uint8_t element : molecule.elements) {
-        largest = std::max<double>(largest, atom_radius(RadiiTable::covalent, element));
-    }
-    const CellGrid grid(molecule.positions, 2.0 * largest + kSlack);
+std::vector<Bond> bonds_by_distance(std::span<const Vec3d> positions,
+                                    std::span<const std::uint8_t> elements) {
+    const CellGrid grid(positions, longest_bond(elements));
     std::vector<Bond> bonds;
     std::mutex mutex;
-    parallel_ranges(molecule.atom_count(), kGrain, [&](std::size_t begin, std::size_t end) {
+    parallel_ranges(positions.size(), kGrain, [&](std::size_t begin, std::size_t end) {
         std::vector<std::uint32_t> near;
         std::vector<Bond> own;
         for (auto a = static_cast<std::uint32_t>(begin); a < end; ++a) {
-            grid.candidates(a, near);
+            grid.near(positions[a], near);
             for (const std::uint32_t b : near) {
-                if (are_bonded(molecule, a, b)) own.push_back({a, b});
+                if (b <= a || !are_bonded(elements[a], elements[b], positions[a] - positions[b])) {
+                    continue;
+                }
+                own.push_back({a, b});
+            }
+        }
+        const std::scoped_lock lock(mutex);
+        bonds.insert(bonds.end(), own.begin(), own.end());
+    });
+    std::ranges::sort(bonds);
+    return bonds;
+}
+
+std::vector<CopyBond> bonds_between_copies(const Molecule& molecule) {
+    // Motions are rounded in files, and rigid only so far.
+    constexpr double kRounding = 0.5;
+    const double reach = longest_bond(molecule.elements) + kRounding;
+    std::vector<UnitAtoms> units;
+    for (const Unit& unit : molecule.units) units.emplace_back(molecule, unit, reach);
+    const std::vector<Place> all = places(molecule.units);
+    std::vector<CopyBond> bonds;
+    std::mutex mutex;
+    parallel_ranges(all.size(), 1, [&](std::size_t begin, std::size_t end) {
+        std::vector<std::uint32_t> near;
+        std::vector<CopyBond> own;
+        for (std::size_t i = begin; i < end; ++i) {
+            const UnitAtoms& here = units[all[i].unit];
+            const Vec3d centre = all[i].motion(here.centre());
+            for (std::size_t k = i + 1; k < all.size(); ++k) {
+                const UnitAtoms& there = units[all[k].unit];
+                const double apart = length(all[k].motion(there.centre()) - centre);
+                if (apart > here.radius() + there.radius()) continue;
+                find_bonds(all[i], here, all[k], there, near, own);
             }
         }
         const std::scoped_lock lock(mutex);

@@ -1,12 +1,11 @@
 #pragma once
 
 #include <cstdint>
-#include <limits>
 #include <optional>
 #include <string>
 #include <utility>
 
-#include "base/vec.h"
+#include "scene/clip_box.h"
 #include "scene/colormap.h"
 
 namespace ink {
@@ -27,21 +26,6 @@ enum class RadiiTable : std::uint8_t {
 
 /// What particles are drawn as.
 enum class Glyph : std::uint8_t { sphere, box, ellipsoid };
-
-/// A box in the units of the file: what has its centre outside is not drawn.
-struct ClipBox {
-    Vec3d lower{-kFar, -kFar, -kFar};
-    Vec3d upper{kFar, kFar, kFar};
-    static constexpr double kFar = std::numeric_limits<double>::infinity();
-
-    bool everything() const {
-        return lower == Vec3d{-kFar, -kFar, -kFar} && upper == Vec3d{kFar, kFar, kFar};
-    }
-    bool holds(Vec3d p) const {
-        return p.x >= lower.x && p.x <= upper.x && p.y >= lower.y && p.y <= upper.y &&
-               p.z >= lower.z && p.z <= upper.z;
-    }
-};
 
 /// What of a file is drawn, and as what. Names of fields are checked where the file is known.
 struct DataSettings {

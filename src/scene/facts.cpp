@@ -6,6 +6,7 @@
 
 #include "scene/elements.h"
 #include "scene/molecule.h"
+#include "scene/scene.h"
 
 namespace ink {
 
@@ -23,25 +24,36 @@ void add_fields(const std::vector<Field>& fields, std::size_t entry, Facts& fact
     }
 }
 
+Facts facts_of(const Molecule& m, std::size_t atom) {
+    Facts facts;
+    if (atom >= m.atom_count()) return facts;
+    if (atom < m.atom_names.size()) facts.emplace_back("name", to_text(m.atom_names[atom]));
+    facts.emplace_back("element", element(m.elements[atom]).symbol);
+    if (const Residue* residue = m.residue(atom)) {
+        facts.emplace_back("residue", fmt::format("{} {}", residue->name, residue->number));
+        if (residue->chain < m.chains.size() && !m.chains[residue->chain].empty()) {
+            const std::size_t copy = m.copy_numbers.empty() ? 0 : m.copy_numbers[atom];
+            facts.emplace_back("chain", m.chains[residue->chain] + copy_suffix(copy));
+        }
+    }
+    add_fields(m.fields, atom, facts);
+    return facts;
+}
+
 }  // namespace
 
-FactSource molecule_facts(Molecule molecule) {
+std::vector<FactSource> molecule_facts(Molecule molecule) {
     const auto kept = std::make_shared<const Molecule>(std::move(molecule));
-    return [kept](std::uint32_t atom) {
-        Facts facts;
-        const Molecule& m = *kept;
-        if (atom >= m.atom_count()) return facts;
-        if (atom < m.atom_names.size()) facts.emplace_back("name", to_text(m.atom_names[atom]));
-        facts.emplace_back("element", element(m.elements[atom]).symbol);
-        if (const Residue* residue = m.residue(atom)) {
-            facts.emplace_back("residue", fmt::format("{} {}", residue->name, residue->number));
-            if (residue->chain < m.chains.size() && !m.chains[residue->chain].empty()) {
-                facts.emplace_back("chain", m.chains[residue->chain]);
-            }
-        }
-        add_fields(m.fields, atom, facts);
-        return facts;
-    };
+    if (kept->units.empty()) {
+        return {[kept](std::uint32_t atom) { return facts_of(*kept, atom); }};
+    }
+    std::vector<FactSource> sources;
+    for (const Unit& unit : kept->units) {
+        sources.emplace_back([kept, first = unit.first](std::uint32_t atom) {
+            return facts_of(*kept, first + atom);
+        });
+    }
+    return sources;
 }
 
 FactSource field_facts(std::vector<Field> fields, std::vector<std::uint32_t> rows) {

@@ -34,6 +34,12 @@ float above(double value) {
 
 }  // namespace
 
+Placement moved(const Placement& placement, const Motion& motion) {
+    const auto turned = [&](Vec3f axis) { return to_float(motion.turn(to_double(axis))); };
+    return {turned(placement.x_axis), turned(placement.y_axis), turned(placement.z_axis),
+            motion(placement.origin)};
+}
+
 Placement placement_between(Vec3d from, Vec3d to, double radius) {
     const Vec3d half = (to - from) * 0.5;
     const auto [x, y] = across(normalize(half));

@@ -7,6 +7,7 @@
 #include "base/bounds.h"
 #include "base/color.h"
 #include "base/vec.h"
+#include "scene/copies.h"
 
 namespace ink {
 
@@ -58,12 +59,25 @@ Placement placement_between(Vec3d from, Vec3d to, double radius);
 /// direction, and it is scaled by `size` alike in all directions.
 Placement placement_about(Vec3d centre, Vec3d axis, double size);
 
-/// Copies of one shape as flat arrays. `colors` and `parts` have one entry a glyph, or none at all.
+/// The placement, moved.
+Placement moved(const Placement& placement, const Motion& motion);
+
+/// One shape in many places, as flat arrays. `colors` and `parts` have one entry a placement, or
+/// none at all.
 struct Glyphs {
     UnitShape shape;
     std::vector<Placement> placements;
     std::vector<Rgb8> colors;          ///< instead of the material's
     std::vector<std::uint32_t> parts;  ///< index into the object's `part_names`
+    std::vector<Copy> copies{};        ///< see CopyNumbering
+    std::uint32_t parts_a_copy = 0;
+
+    CopyNumbering numbering() const { return {copies, placements.size(), parts_a_copy}; }
+    std::size_t count() const { return numbering().count(); }
+    Placement at(std::size_t primitive) const {
+        if (copies.empty()) return placements[primitive];
+        return moved(placements[numbering().source(primitive)], numbering().copy(primitive).motion);
+    }
 };
 
 /// Solids with six four-sided faces, as flat arrays like Glyphs. Corners are in VTK's order: 0 to 3

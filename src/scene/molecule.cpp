@@ -57,6 +57,7 @@ void append_atoms(const Molecule& from, const std::vector<std::uint8_t>& keep, M
     append_kept(from.atom_names, keep, 1, into.atom_names);
     append_kept(from.residues, keep, 1, into.residues);
     append_kept(from.radii, keep, 1, into.radii);
+    append_kept(from.copy_numbers, keep, 1, into.copy_numbers);
     for (std::size_t f = 0; f < from.fields.size(); ++f) {
         append_kept(from.fields[f].values, keep, from.fields[f].components, into.fields[f].values);
     }
@@ -109,24 +110,6 @@ std::size_t atom_count(const Molecule& molecule, const Assembly& assembly) {
 
 namespace {
 
-/// Gives the atoms from `first_atom` on residues and chains of their own, as copy `copy` of what
-/// they are copied from.
-void rename_copy(const Molecule& from, std::size_t first_atom, std::size_t copy, Molecule& into) {
-    if (into.residues.empty()) return;
-    const auto first_residue = static_cast<std::uint32_t>(into.residue_table.size());
-    const auto first_chain = static_cast<std::uint32_t>(into.chains.size());
-    for (Residue residue : from.residue_table) {
-        residue.chain += first_chain;
-        into.residue_table.push_back(std::move(residue));
-    }
-    for (const std::string& chain : from.chains) {
-        into.chains.push_back(fmt::format("{}-{}", chain, copy));
-    }
-    for (std::size_t i = first_atom; i < into.residues.size(); ++i) {
-        into.residues[i] += first_residue;
-    }
-}
-
 /// Whether lengths stay what they are, but for the digits that files round to.
 bool is_rigid(const Motion& motion) {
     constexpr double kRounding = 1e-4;
@@ -142,38 +125,94 @@ bool is_rigid(const Motion& motion) {
     return true;
 }
 
-}  // namespace
-
-bool is_repetition(const Assembly& assembly) {
-    return assembly.copies.size() == 1 && assembly.copies.front().motions.size() > 1 &&
-           std::ranges::all_of(assembly.copies.front().motions, is_rigid);
-}
-
-Molecule repeated(const Molecule& molecule, const Assembly& assembly) {
-    const Assembly::Copies& copies = assembly.copies.front();
-    Molecule out = filtered(molecule, copied_atoms(molecule, copies));
-    out.copies = copies.motions;
+/// Chains that are copied by the same motions together, so that they are one unit.
+std::vector<Assembly::Copies> merged(const std::vector<Assembly::Copies>& groups) {
+    std::vector<Assembly::Copies> out;
+    for (const Assembly::Copies& group : groups) {
+        const auto same = std::ranges::find(out, group.motions, &Assembly::Copies::motions);
+        if (same == out.end()) {
+            out.push_back(group);
+        } else if (same->asyms.empty() || group.asyms.empty()) {
+            same->asyms.clear();
+        } else {
+            same->asyms.insert(same->asyms.end(), group.asyms.begin(), group.asyms.end());
+        }
+    }
     return out;
 }
 
-Molecule assembled(const Molecule& molecule, const Assembly& assembly) {
-    Molecule out = without_atoms(molecule);
-    std::size_t most_motions = 0;
-    for (const auto& copies : assembly.copies) {
-        most_motions = std::max(most_motions, copies.motions.size());
+/// Appends the atoms that `keep` names where copy `number` of them is.
+void append_copy(const Molecule& from, const std::vector<std::uint8_t>& keep, const Copy& copy,
+                 Molecule& into) {
+    const std::size_t first = into.atom_count();
+    append_atoms(from, keep, into);
+    for (std::size_t i = first; i < into.atom_count(); ++i) {
+        into.positions[i] = copy.motion(into.positions[i]);
     }
-    for (std::size_t k = 0; k < most_motions; ++k) {
-        const std::size_t first_of_copy = out.atom_count();
-        for (const Assembly::Copies& copies : assembly.copies) {
-            if (k >= copies.motions.size()) continue;
-            const std::size_t first = out.atom_count();
-            append_atoms(molecule, copied_atoms(molecule, copies), out);
-            for (std::size_t i = first; i < out.atom_count(); ++i) {
-                out.positions[i] = copies.motions[k](out.positions[i]);
-            }
+    into.copy_numbers.resize(into.atom_count(), copy.number);
+}
+
+/// Which atoms of a copy lie in the box.
+std::vector<std::uint8_t> inside(const Molecule& molecule, const Motion& motion,
+                                 const ClipBox& clip) {
+    std::vector<std::uint8_t> keep(molecule.atom_count());
+    for (std::size_t i = 0; i < keep.size(); ++i) {
+        keep[i] = clip.holds(motion(molecule.positions[i])) ? 1 : 0;
+    }
+    return keep;
+}
+
+/// The copies of a group that can be a unit: rigid ones that lie in the box, if there are several.
+std::vector<Copy> whole_copies(const Molecule& chains, const std::vector<Motion>& motions,
+                               const ClipBox& clip) {
+    std::vector<Copy> whole;
+    for (std::size_t k = 0; k < motions.size(); ++k) {
+        const auto is_inside = [&](Vec3d p) { return clip.holds(motions[k](p)); };
+        if (is_rigid(motions[k]) &&
+            (clip.everything() || std::ranges::all_of(chains.positions, is_inside))) {
+            whole.push_back({motions[k], static_cast<std::uint32_t>(k)});
         }
-        if (k > 0) rename_copy(molecule, first_of_copy, k + 1, out);
     }
+    if (whole.size() == 1) whole.clear();
+    return whole;
+}
+
+/// Appends the copies of one group: those that are no unit go into `apart`.
+void append_group(const Molecule& chains, const std::vector<Motion>& motions, const ClipBox& clip,
+                  Molecule& units, Molecule& apart) {
+    std::vector<Copy> whole = whole_copies(chains, motions, clip);
+    for (std::size_t k = 0; k < motions.size(); ++k) {
+        const Copy copy{motions[k], static_cast<std::uint32_t>(k)};
+        if (std::ranges::find(whole, copy.number, &Copy::number) != whole.end()) continue;
+        append_copy(chains, inside(chains, copy.motion, clip), copy, apart);
+    }
+    if (whole.empty()) return;
+    units.units.push_back({units.atom_count(), chains.atom_count(), std::move(whole)});
+    append_atoms(chains, std::vector<std::uint8_t>(chains.atom_count(), 1), units);
+}
+
+}  // namespace
+
+std::size_t Molecule::drawn_count() const {
+    std::size_t count = units.empty() ? atom_count() : 0;
+    for (const Unit& unit : units) {
+        count += unit.count * std::max<std::size_t>(unit.copies.size(), 1);
+    }
+    return count;
+}
+
+Molecule assembled(const Molecule& molecule, const Assembly& assembly, const ClipBox& clip) {
+    Molecule out = without_atoms(molecule);
+    Molecule apart = without_atoms(molecule);
+    for (const Assembly::Copies& group : merged(assembly.copies)) {
+        const Molecule chains = filtered(molecule, copied_atoms(molecule, group));
+        if (chains.atom_count() > 0) append_group(chains, group.motions, clip, out, apart);
+    }
+    if (apart.atom_count() == 0) return out;
+    if (out.units.empty()) return apart;
+    out.units.push_back({out.atom_count(), apart.atom_count()});
+    out.copy_numbers.resize(out.atom_count());
+    append_atoms(apart, std::vector<std::uint8_t>(apart.atom_count(), 1), out);
     return out;
 }
 

@@ -7,8 +7,9 @@
 #include <vector>
 
 #include "base/vec.h"
+#include "scene/clip_box.h"
+#include "scene/copies.h"
 #include "scene/field.h"
-#include "scene/motion.h"
 
 namespace ink {
 
@@ -34,6 +35,12 @@ struct Bond {
     friend constexpr auto operator<=>(Bond, Bond) = default;
 };
 
+/// Atoms in a row that are drawn once for each of `copies`; empty: once, where they are.
+struct Unit {
+    std::size_t first = 0, count = 0;
+    std::vector<Copy> copies{};
+};
+
 /// One frame of a molecule, as flat arrays of its atoms. Arrays of one entry an atom are complete
 /// or, but for the first two, empty.
 struct Molecule {
@@ -53,10 +60,12 @@ struct Molecule {
     std::vector<Bond> bonds;      ///< that the file gives
     bool has_bond_table = false;  ///< else bonds are found by distance
 
-    /// All atoms are drawn once for each of these, by which they are moved; empty: once.
-    std::vector<Motion> copies;
+    /// Of atoms that are copies themselves: which one, from 0, as Copy::number. Empty: all 0.
+    std::vector<std::uint32_t> copy_numbers;
+    std::vector<Unit> units;  ///< all atoms, in order; empty: they are drawn once, where they are
 
     std::size_t atom_count() const { return positions.size(); }
+    std::size_t drawn_count() const;  ///< with all copies
     const Residue* residue(std::size_t atom) const {
         return residues.empty() ? nullptr : &residue_table[residues[atom]];
     }
@@ -79,13 +88,9 @@ struct Assembly {
 /// Atoms that the assembly has.
 std::size_t atom_count(const Molecule& molecule, const Assembly& assembly);
 
-/// Whether all that the assembly copies is copied by the same motions, several of them, which are
-/// rigid: then it can be drawn as copies of what is stored once.
-bool is_repetition(const Assembly& assembly);
-/// The chains of such an assembly, with its motions as their copies.
-Molecule repeated(const Molecule& molecule, const Assembly& assembly);
-
-/// All copies as one molecule; chains of the second copy on are named "A-2", "A-3", ...
-Molecule assembled(const Molecule& molecule, const Assembly& assembly);
+/// What of the assembly lies in the box. What is copied by rigid motions stays there once, as units
+/// with copies; copies that the box cuts, motions that stretch, and what is there once anyway
+/// follow as atoms of their own.
+Molecule assembled(const Molecule& molecule, const Assembly& assembly, const ClipBox& clip = {});
 
 }  // namespace ink

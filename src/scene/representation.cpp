@@ -2,8 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <iterator>
+#include <span>
+#include <utility>
 
 #include "base/error.h"
 #include "base/parallel.h"
@@ -89,7 +93,7 @@ std::vector<std::uint32_t> by_residue(const Molecule& molecule, const Index& ind
     return parts;
 }
 
-Parts atom_parts(const Molecule& molecule, const DataSettings& settings) {
+Parts parts_of_originals(const Molecule& molecule, const DataSettings& settings) {
     const bool by_residue_itself =
         settings.by_residue && settings.parts.empty() && !molecule.residues.empty();
     const std::string level = by_residue_itself ? "residue" : settings.parts;
@@ -115,6 +119,93 @@ Parts atom_parts(const Molecule& molecule, const DataSettings& settings) {
         fmt::format("--ids: part:{}: expected part:chain, residue, entity or element", level));
 }
 
+Parts atom_parts(const Molecule& molecule, const DataSettings& settings) {
+    Parts parts = parts_of_originals(molecule, settings);
+    if (!parts.own_a_copy || molecule.copy_numbers.empty()) return parts;
+    for (std::size_t i = 0; i < parts.of_atom.size(); ++i) {
+        parts.of_atom[i] +=
+            molecule.copy_numbers[i] * static_cast<std::uint32_t>(parts.names.size());
+    }
+    return parts;
+}
+
+// ---- Objects ----
+
+/// The entries of one unit, of which none is needed again.
+template <class T>
+std::vector<T> taken(std::vector<T>& all, const Unit& unit) {
+    if (all.empty() || unit.count == all.size()) return std::move(all);
+    const auto begin = all.begin() + static_cast<std::ptrdiff_t>(unit.first);
+    return {begin, begin + static_cast<std::ptrdiff_t>(unit.count)};
+}
+
+/// The units of a molecule as objects of atoms.
+class AtomObjects {
+  public:
+    AtomObjects(const Molecule& molecule, const DataSettings& settings)
+        : molecule_(molecule),
+          radii_(atom_radii(molecule, settings)),
+          elements_(molecule.elements),
+          coloring_(color_atoms(molecule, settings)),
+          parts_(atom_parts(molecule, settings)) {
+        common_.name = molecule.name;
+        common_.kind = ObjectKind::molecule;
+        if (molecule.atom_count() > 0) common_.frame.origin = molecule.positions.front();
+        common_.part_names = parts_.names;
+        common_.part_wholes = parts_.wholes;
+        if (settings.by_residue && !parts_.wholes.empty()) common_.usual_ids = IdLevel::part;
+        if (settings.representation == Representation::sticks) common_.usual_ids = IdLevel::object;
+    }
+
+    Object make(const Unit& unit) {
+        Object object = common_;
+        object.color_scale = std::exchange(coloring_.scale, std::nullopt);
+        object.elements = taken(elements_, unit);
+        Spheres shape;
+        shape.spheres.resize(unit.count);
+        parallel_ranges(unit.count, kGrain, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i) {
+                shape.spheres[i] = {object.frame.from_world(molecule_.positions[unit.first + i]),
+                                    radii_[unit.first + i]};
+            }
+        });
+        shape.colors = taken(coloring_.colors, unit);
+        shape.parts = taken(parts_.of_atom, unit);
+        shape.copies = unit.copies;
+        for (Copy& copy : shape.copies) {
+            copy.motion.shift = copy.motion(object.frame.origin) - object.frame.origin;
+        }
+        if (parts_.own_a_copy) {
+            shape.parts_a_copy = static_cast<std::uint32_t>(parts_.names.size());
+        }
+        object.shape = std::move(shape);
+        return object;
+    }
+
+  private:
+    const Molecule& molecule_;
+    std::vector<float> radii_;
+    std::vector<std::uint8_t> elements_;
+    Coloring coloring_;
+    Parts parts_;
+    Object common_;
+};
+
+/// Bonds between atoms of a unit, which are counted from its first one.
+std::vector<Bond> bonds_within(const Molecule& molecule, const Unit& unit) {
+    if (!molecule.has_bond_table) {
+        return bonds_by_distance(std::span(molecule.positions).subspan(unit.first, unit.count),
+                                 std::span(molecule.elements).subspan(unit.first, unit.count));
+    }
+    const auto first = static_cast<std::uint32_t>(unit.first);
+    const auto end = static_cast<std::uint32_t>(unit.first + unit.count);
+    std::vector<Bond> bonds;
+    for (const Bond& bond : molecule.bonds) {
+        if (bond.a >= first && bond.b < end) bonds.push_back({bond.a - first, bond.b - first});
+    }
+    return bonds;
+}
+
 }  // namespace
 
 std::optional<double> uniform_radius(const std::string& text) {
@@ -129,41 +220,27 @@ std::optional<double> uniform_radius(const std::string& text) {
 std::vector<Object> represent(const Molecule& molecule, const DataSettings& settings) {
     assert(molecule.elements.size() == molecule.atom_count());
     assert(molecule.residues.empty() || molecule.residues.size() == molecule.atom_count());
-    const std::vector<float> radii = atom_radii(molecule, settings);
-    Object object;
-    object.name = molecule.name;
-    object.kind = ObjectKind::molecule;
-    if (molecule.atom_count() > 0) object.frame.origin = molecule.positions.front();
-    Spheres shape;
-    shape.spheres.resize(molecule.atom_count());
-    parallel_ranges(molecule.atom_count(), kGrain, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) {
-            shape.spheres[i] = {object.frame.from_world(molecule.positions[i]), radii[i]};
-        }
-    });
-    Coloring coloring = color_atoms(molecule, settings);
-    shape.colors = std::move(coloring.colors);
-    object.color_scale = std::move(coloring.scale);
-    Parts parts = atom_parts(molecule, settings);
-    shape.parts = std::move(parts.of_atom);
-    shape.copies = molecule.copies;
-    for (Motion& motion : shape.copies) {
-        motion.shift = motion(object.frame.origin) - object.frame.origin;
-    }
-    if (parts.own_a_copy) shape.parts_a_copy = static_cast<std::uint32_t>(parts.names.size());
-    object.part_names = std::move(parts.names);
-    object.part_wholes = std::move(parts.wholes);
-    if (settings.by_residue && !object.part_wholes.empty()) object.usual_ids = IdLevel::part;
-    object.elements = molecule.elements;
-    object.shape = std::move(shape);
+    std::vector<Unit> units = molecule.units;
+    if (units.empty()) units.push_back({0, molecule.atom_count()});
+    AtomObjects atoms(molecule, settings);
     std::vector<Object> objects;
-    if (settings.representation == Representation::sticks) object.usual_ids = IdLevel::object;
-    objects.push_back(std::move(object));
-    if (settings.representation != Representation::spheres) {
-        if (auto sticks = make_sticks(molecule, objects[0], settings)) {
-            objects.push_back(std::move(*sticks));
+    for (const Unit& unit : units) {
+        objects.push_back(atoms.make(unit));
+        objects.back().continues_previous = objects.size() > 1;
+    }
+    if (settings.representation == Representation::spheres) return objects;
+    std::vector<Object> all_sticks;
+    for (std::size_t u = 0; u < units.size(); ++u) {
+        if (auto sticks = make_sticks(objects[u], bonds_within(molecule, units[u]), settings)) {
+            all_sticks.push_back(std::move(*sticks));
         }
     }
+    if (!molecule.units.empty() && !molecule.has_bond_table) {
+        if (auto sticks = make_sticks(objects, bonds_between_copies(molecule), settings)) {
+            all_sticks.push_back(std::move(*sticks));
+        }
+    }
+    std::ranges::move(all_sticks, std::back_inserter(objects));
     return objects;
 }
 

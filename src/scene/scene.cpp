@@ -41,8 +41,8 @@ Bounds3f shape_bounds(const Mesh& shape) {
 }
 
 Bounds3f shape_bounds(const Glyphs& shape) {
-    return bounds_of(shape.placements.size(), [&](Bounds3f& box, std::size_t i) {
-        box.add(glyph_bounds(shape.shape, shape.placements[i]));
+    return bounds_of(shape.count(), [&](Bounds3f& box, std::size_t i) {
+        box.add(glyph_bounds(shape.shape, shape.at(i)));
     });
 }
 
@@ -62,6 +62,13 @@ struct Rebase {
     Vec3f operator()(Vec3f p) const { return to_float(to_double(p) * scale + shift); }
 };
 
+void rebase(std::vector<Copy>& copies, const Rebase& move) {
+    for (Copy& copy : copies) {
+        Vec3d& shift = copy.motion.shift;
+        shift = shift * move.scale + move.shift - copy.motion.turn(move.shift);
+    }
+}
+
 void rebase(Spheres& shape, const Rebase& move) {
     parallel_ranges(shape.spheres.size(), kGrain, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
@@ -70,9 +77,7 @@ void rebase(Spheres& shape, const Rebase& move) {
             sphere.radius = static_cast<float>(sphere.radius * move.scale);
         }
     });
-    for (Motion& motion : shape.copies) {
-        motion.shift = motion.shift * move.scale + move.shift - motion.turn(move.shift);
-    }
+    rebase(shape.copies, move);
 }
 
 void rebase(Mesh& shape, const Rebase& move) {
@@ -91,6 +96,7 @@ void rebase(Glyphs& shape, const Rebase& move) {
             }
         }
     });
+    rebase(shape.copies, move);
 }
 
 void rebase(Hexahedra& shape, const Rebase& move) {
@@ -110,11 +116,13 @@ Frame frame_about(const Bounds3d& bounds) {
 
 }  // namespace
 
-std::size_t primitive_count(const Shape& shape) {
-    if (const auto* spheres = std::get_if<Spheres>(&shape)) return spheres->count();
-    if (const auto* mesh = std::get_if<Mesh>(&shape)) return mesh->triangles.size();
-    if (const auto* glyphs = std::get_if<Glyphs>(&shape)) return glyphs->placements.size();
-    return std::get<Hexahedra>(shape).corners.size();
+std::size_t primitive_count(const Shape& shape) { return numbering(shape).count(); }
+
+CopyNumbering numbering(const Shape& shape) {
+    if (const auto* spheres = std::get_if<Spheres>(&shape)) return spheres->numbering();
+    if (const auto* glyphs = std::get_if<Glyphs>(&shape)) return glyphs->numbering();
+    if (const auto* mesh = std::get_if<Mesh>(&shape)) return {{}, mesh->triangles.size()};
+    return {{}, std::get<Hexahedra>(shape).corners.size()};
 }
 
 std::string name_of_part(std::span<const std::string> names, std::uint32_t a_copy,
@@ -127,29 +135,21 @@ std::string name_of_part(std::span<const std::string> names, std::uint32_t a_cop
 }
 
 std::string Object::part_name(std::uint32_t part) const {
-    const auto* spheres = std::get_if<Spheres>(&shape);
-    return name_of_part(part_names, spheres == nullptr ? 0 : spheres->parts_a_copy, part);
+    return name_of_part(part_names, numbering(shape).parts_a_copy, part);
 }
 
-std::string copy_suffix(std::size_t copy) {
-    return copy == 0 ? std::string() : fmt::format("-{}", copy + 1);
+std::string copy_suffix(std::size_t number) {
+    return number == 0 ? std::string() : fmt::format("-{}", number + 1);
 }
 
 std::uint32_t part_of(const Shape& shape, std::size_t primitive) {
-    if (const auto* spheres = std::get_if<Spheres>(&shape)) {
-        return spheres->parts[spheres->source(primitive)] +
-               static_cast<std::uint32_t>(spheres->copy(primitive)) * spheres->parts_a_copy;
-    }
-    return std::visit([&](const auto& s) { return s.parts[primitive]; }, shape);
+    const CopyNumbering numbers = numbering(shape);
+    return std::visit([&](const auto& s) { return s.parts[numbers.source(primitive)]; }, shape) +
+           numbers.first_part(primitive);
 }
 
 bool has_parts(const Shape& shape) {
     return std::visit([](const auto& s) { return !s.parts.empty(); }, shape);
-}
-
-std::size_t source_of(const Shape& shape, std::size_t primitive) {
-    const auto* spheres = std::get_if<Spheres>(&shape);
-    return spheres == nullptr ? primitive : spheres->source(primitive);
 }
 
 Bounds3d Object::world_bounds() const {

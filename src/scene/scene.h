@@ -37,17 +37,19 @@ using Shape = std::variant<Spheres, Mesh, Glyphs, Hexahedra>;
 /// Spheres, triangles, glyphs or hexahedra.
 std::size_t primitive_count(const Shape& shape);
 
+/// How the primitives of a shape are copies of those that are stored, which is what arrays of one
+/// entry each go by.
+CopyNumbering numbering(const Shape& shape);
+
 bool has_parts(const Shape& shape);
 /// Which part a primitive of a shape with parts is of.
 std::uint32_t part_of(const Shape& shape, std::size_t primitive);
-/// The primitive of which another one is a copy, which is what arrays of one entry each go by.
-std::size_t source_of(const Shape& shape, std::size_t primitive);
 /// The name of a part, which is "A-2" in the second copy of "A", where copies have `a_copy` parts
 /// of their own each; empty where the part has none.
 std::string name_of_part(std::span<const std::string> names, std::uint32_t a_copy,
                          std::uint32_t part);
-/// What tells the names of a copy from those of what it copies: "-2"; empty for the first.
-std::string copy_suffix(std::size_t copy);
+/// What tells the names of a copy from those of what it copies: "-2"; empty for number 0.
+std::string copy_suffix(std::size_t number);
 
 /// One thing that was loaded or added: a molecule, a mesh, a particle set, an exact shape.
 struct Object {

@@ -2,8 +2,6 @@
 
 #include <utility>
 
-#include "scene/bonds.h"
-
 namespace ink {
 
 namespace {
@@ -13,44 +11,74 @@ constexpr double kStickAlone = 0.2;
 /// Of sticks between atoms of two colours, where lines would part two halves.
 constexpr Rgb8 kStickColor{168, 168, 168};
 
+/// One end of a stick.
+struct End {
+    Vec3d place;  ///< in the frame of the atoms
+    Rgb8 color;
+    std::uint32_t part = 0;
+};
+
+End stored_end(const Spheres& atoms, std::size_t atom) {
+    return {to_double(atoms.spheres[atom].centre),
+            atoms.colors.empty() ? kStickColor : atoms.colors[atom],
+            atoms.parts.empty() ? 0 : atoms.parts[atom]};
+}
+
+/// The same of an atom that copies are counted with.
+End end_at(const Spheres& atoms, std::size_t atom) {
+    End end = stored_end(atoms, atoms.numbering().source(atom));
+    end.place = to_double(atoms.at(atom).centre);
+    end.part += atoms.numbering().first_part(atom);
+    return end;
+}
+
 /// A stick a bond, in the colour and part of its ends. Where these differ, sticks alone are two
 /// halves.
 class StickBuilder {
   public:
-    StickBuilder(const Spheres& atoms, double radius, bool in_halves)
-        : atoms_(atoms), radius_(radius), in_halves_(in_halves) {
+    explicit StickBuilder(const DataSettings& settings)
+        : radius_(stick_radius(settings)),
+          in_halves_(settings.representation == Representation::sticks) {
         sticks_.shape = {.kind = GlyphKind::frustum, .capped = false};
     }
 
-    void add(const Bond& bond) {
-        const Vec3d from = to_double(atoms_.spheres[bond.a].centre);
-        const Vec3d to = to_double(atoms_.spheres[bond.b].centre);
-        if (from == to) return;
-        if (!in_halves_ || (color(bond.a) == color(bond.b) && part(bond.a) == part(bond.b))) {
-            const bool same = color(bond.a) == color(bond.b);
-            add(from, to, same ? color(bond.a) : kStickColor, part(bond.a));
+    void add(const End& a, const End& b) {
+        if (a.place == b.place) return;
+        const bool same_color = a.color == b.color;
+        if (!in_halves_ || (same_color && a.part == b.part)) {
+            add(a.place, b.place, same_color ? a.color : kStickColor, a.part);
             return;
         }
-        const Vec3d middle = (from + to) * 0.5;
-        add(from, middle, color(bond.a), part(bond.a));
-        add(middle, to, color(bond.b), part(bond.b));
+        const Vec3d middle = (a.place + b.place) * 0.5;
+        add(a.place, middle, a.color, a.part);
+        add(middle, b.place, b.color, b.part);
     }
-    Glyphs take() { return std::move(sticks_); }
+
+    /// The sticks as one thing with `atoms`.
+    std::optional<Object> finish(const Object& atoms) && {
+        if (sticks_.placements.empty()) return std::nullopt;
+        if (!has_parts(atoms.shape)) sticks_.parts.clear();
+        sticks_.parts_a_copy = numbering(atoms.shape).parts_a_copy;
+        Object object;
+        object.name = atoms.name + " bonds";
+        object.kind = atoms.kind;
+        object.frame = atoms.frame;
+        object.shape = std::move(sticks_);
+        object.material = atoms.material;
+        object.part_names = atoms.part_names;
+        object.part_wholes = atoms.part_wholes;
+        object.usual_ids = atoms.usual_ids;
+        object.continues_previous = true;
+        return object;
+    }
 
   private:
-    Rgb8 color(std::uint32_t atom) const {
-        return atoms_.colors.empty() ? kStickColor : atoms_.colors[atom];
-    }
-    std::uint32_t part(std::uint32_t atom) const {
-        return atoms_.parts.empty() ? 0 : atoms_.parts[atom];
-    }
     void add(Vec3d from, Vec3d to, Rgb8 color, std::uint32_t part) {
         sticks_.placements.push_back(placement_between(from, to, radius_));
         sticks_.colors.push_back(color);
-        if (!atoms_.parts.empty()) sticks_.parts.push_back(part);
+        sticks_.parts.push_back(part);
     }
 
-    const Spheres& atoms_;
     double radius_;
     bool in_halves_;
     Glyphs sticks_;
@@ -63,28 +91,24 @@ double stick_radius(const DataSettings& settings) {
     return settings.stick_radius.value_or(alone ? kStickAlone : kStickWithBalls);
 }
 
-std::optional<Object> make_sticks(const Molecule& molecule, const Object& atoms,
+std::optional<Object> make_sticks(const Object& atoms, std::span<const Bond> bonds,
                                   const DataSettings& settings) {
-    const auto& spheres = std::get<Spheres>(atoms.shape);
-    StickBuilder builder(spheres, stick_radius(settings),
-                         settings.representation == Representation::sticks);
-    for (const Bond& bond :
-         molecule.has_bond_table ? molecule.bonds : bonds_by_distance(molecule)) {
-        builder.add(bond);
-    }
-    Glyphs sticks = builder.take();
-    if (sticks.placements.empty()) return std::nullopt;
-    Object object;
-    object.name = atoms.name + " bonds";
-    object.kind = atoms.kind;
-    object.frame = atoms.frame;
-    object.shape = std::move(sticks);
-    object.material = atoms.material;
-    object.part_names = atoms.part_names;
-    object.part_wholes = atoms.part_wholes;
-    object.usual_ids = atoms.usual_ids;
-    object.continues_previous = true;
-    return object;
+    const auto& ends = std::get<Spheres>(atoms.shape);
+    StickBuilder builder(settings);
+    for (const Bond& bond : bonds) builder.add(stored_end(ends, bond.a), stored_end(ends, bond.b));
+    auto sticks = std::move(builder).finish(atoms);
+    if (sticks) std::get<Glyphs>(sticks->shape).copies = ends.copies;
+    return sticks;
+}
+
+std::optional<Object> make_sticks(std::span<const Object> atoms, std::span<const CopyBond> bonds,
+                                  const DataSettings& settings) {
+    const auto end = [&](const CopyBond::End& of) {
+        return end_at(std::get<Spheres>(atoms[of.unit].shape), of.atom);
+    };
+    StickBuilder builder(settings);
+    for (const CopyBond& bond : bonds) builder.add(end(bond.a), end(bond.b));
+    return std::move(builder).finish(atoms.front());
 }
 
 }  // namespace ink

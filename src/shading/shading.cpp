@@ -101,9 +101,9 @@ void Shader::add_surface(const Object& object, const ResolvedMaterial& material,
         const auto& colors = std::visit(
             [](const auto& s) -> auto& { return s.colors; }, object.shape);
         if (!colors.empty()) surface.primitive_colors = colors.data();
-        const auto* spheres = std::get_if<Spheres>(&object.shape);
-        if (spheres != nullptr && !spheres->copies.empty()) {
-            surface.primitives_a_copy = static_cast<std::uint32_t>(spheres->spheres.size());
+        const CopyNumbering numbers = numbering(object.shape);
+        if (!numbers.copies.empty()) {
+            surface.primitives_a_copy = static_cast<std::uint32_t>(numbers.originals);
         }
     } else {
         const auto& mesh = std::get<Mesh>(object.shape);
