@@ -171,7 +171,7 @@ TEST(CrumbOfAFold, ThatHangsOnAnotherLineIsDroppedIfItIsAStub) {
     EXPECT_GT(folds(1.5F), 2);  // longer than two widths, though not than five
 }
 
-TEST(BrokenFold, IsMendedAlikeWhateverTheOrderOfItsPieces) {
+TEST(BrokenFold, IsMendedAlikeWhateverTheOrderOfItsPiecesAndByAnyNumberOfWorkers) {
     const World world{{broken_fold(0.1, 40.0, {{5, 13}, {20, 31}, {37, 43}})}};
     const Mended mended = mend(world, 2.0F);
     std::vector<Segment> shuffled = mended.found.segments;
@@ -181,10 +181,15 @@ TEST(BrokenFold, IsMendedAlikeWhateverTheOrderOfItsPieces) {
     viewpoint.parallel = true;
     viewpoint.origin = {{0, 0, 2}, {world.unit, 0, 0}, {0, -world.unit, 0}};
     viewpoint.direction = {{0, 0, -1}, {}, {}};
-    const FoldRepairs again = mend_folds(shuffled, viewpoint, 1.0F, 2.0F,
-                                         [&](std::span<const Vec2f> points, std::span<Sample> out) {
-                                             std::ranges::transform(points, out.begin(), world);
-                                         });
+    const FoldWorker worker{[&](std::span<const Vec2f> points, std::span<Sample> out) {
+                                std::ranges::transform(points, out.begin(), world);
+                            },
+                            {}};
+    const std::vector<FoldWorker> workers(3, worker);
+    const FoldLoop backwards = [](std::size_t count, const auto& body) {
+        for (std::size_t k = count; k-- > 0;) body(k, k % 3);
+    };
+    const FoldRepairs again = mend_folds(shuffled, viewpoint, 1.0F, 2.0F, workers, backwards);
     ASSERT_EQ(again.bridges.size(), mended.repairs.bridges.size());
     for (std::size_t k = 0; k < again.bridges.size(); ++k) {
         EXPECT_EQ(again.bridges[k].a, mended.repairs.bridges[k].a);

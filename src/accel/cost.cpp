@@ -26,7 +26,7 @@ double stored(const Spheres& s) {
 double stored(const Mesh& m) {
     return size_of(m.vertices) + size_of(m.triangles) + size_of(m.corner_normals) +
            size_of(m.line_normals) + size_of(m.colors) + size_of(m.parts) + size_of(m.faces) +
-           size_of(m.edge_flags);
+           size_of(m.edge_flags) + size_of(m.twins);
 }
 double stored(const Glyphs& g) {
     return size_of(g.placements) + size_of(g.colors) + size_of(g.parts) + size_of(g.copies);

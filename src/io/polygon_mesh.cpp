@@ -258,6 +258,7 @@ FileContents mesh_contents(const std::filesystem::path& file, PolygonMesh polygo
     stitch(mesh, topology);
     smooth_normals(mesh, topology);
     warn_about_branches(mesh, topology, polygons);
+    mesh.twins = std::move(topology).take_twins();
 
     Object object;
     object.name = model_name(file);

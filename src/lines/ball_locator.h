@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <span>
 #include <vector>
 
@@ -9,14 +8,9 @@
 #include "lines/locate.h"
 #include "lines/predict_lanes.h"
 #include "sampling/samples.h"
+#include "sampling/surface_key.h"
 
 namespace ink {
-
-/// Tells surfaces apart: one ball from another, whatever geometry they belong to.
-struct SurfaceKey {
-    std::uint32_t object = 0xFFFFFFFFU, primitive = 0;  ///< the object of a miss
-    friend bool operator==(const SurfaceKey&, const SurfaceKey&) = default;
-};
 
 /// What one ray saw of a ball, or the background.
 struct BallHit {
@@ -31,10 +25,6 @@ struct BallEdge {
     std::uint32_t edge;  ///< index of the suspect edge
     BallHit first, second;
 };
-
-/// Asks which surfaces rays hit: as many out as points in.
-using IdentifyFunction =
-    std::function<void(std::span<const Vec2f> points, std::span<SurfaceKey> out)>;
 
 /// Locates what Locator would between balls, sixteen edges at a time and without samples of its
 /// own: a crossing is computed, and one ray beside it asked what it hits. What that does not settle

@@ -2,21 +2,26 @@
 
 #include <algorithm>
 #include <bit>
-#include <cstring>
+#include <span>
 
 #include "base/lanes.h"
-#include "base/multiversion.h"
 
+// Everything between the two namespace macros is built once for each instruction set.
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "lines/detect.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+#ifndef INK_DETECT_ROWS
+#define INK_DETECT_ROWS
 namespace ink {
 
-namespace {
-
-/// One row of the grid as pointers, for loops that vectorise.
-struct Row {
+/// Part of a row of the grid as pointers.
+struct GridRow {
     const GeometryId* id;
     const float *px, *py, *pz, *nx, *ny, *nz;
 
-    Row(const SampleGrid& grid, std::size_t first)
+    GridRow(const SampleGrid& grid, std::size_t first)
         : id(grid.id.data() + first),
           px(grid.px.data() + first),
           py(grid.py.data() + first),
@@ -26,75 +31,126 @@ struct Row {
           nz(grid.nz.data() + first) {}
 };
 
-static_assert(kBackground == 0);
+/// Bit i is set for the edge between points i of two rows.
+struct Suspects {
+    std::uint32_t id, depth, normal;
+};
 
-/// Whether a packet's length of points is background in both rows.
-INKTRACE_INLINE bool is_empty(const GeometryId* a, const GeometryId* b) {
-    GeometryId any = 0;
-    for (int i = 0; i < kLanes; ++i) any |= a[i] | b[i];
-    return any == kBackground;
+}  // namespace ink
+#endif
+
+HWY_BEFORE_NAMESPACE();
+namespace ink::HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+using Floats = hn::CappedTag<float, kLanes>;
+using Ids = hn::Rebind<GeometryId, Floats>;
+constexpr Floats kFloats;
+constexpr Ids kIds;
+using Number = hn::Vec<Floats>;
+
+HWY_INLINE Number load(const float* from) { return hn::LoadU(kFloats, from); }
+
+template <class Tag, class Mask>
+HWY_INLINE std::uint32_t bits_of(Tag tag, Mask mask) {
+    std::uint8_t bytes[8] = {};
+    hn::StoreMaskBits(tag, mask, bytes);
+    return static_cast<std::uint32_t>(bytes[0]) | static_cast<std::uint32_t>(bytes[1]) << 8U;
 }
 
-/// Suspicions between `a` and `b`, point by point. Background at either end of the rows is left
-/// out.
-INKTRACE_MULTIVERSION
-void compare_rows(const Row& a, const Row& b, int count, const DetectSettings& settings,
-                  std::uint8_t* __restrict codes) {
-    int begin = 0;
-    int end = count;
-    while (begin + kLanes <= end && is_empty(a.id + begin, b.id + begin)) begin += kLanes;
-    while (end - kLanes >= begin && is_empty(a.id + end - kLanes, b.id + end - kLanes)) {
-        end -= kLanes;
+/// Between hits of one geometry: whether they do not fit one smooth surface, or their normals turn.
+HWY_INLINE void compare_surfaces(const GridRow& a, const GridRow& b, int i,
+                                 const DetectSettings& settings, std::uint32_t& broken,
+                                 std::uint32_t& bent) {
+    const auto dot = [](Number ax, Number ay, Number az, Number bx, Number by, Number bz) {
+        return hn::Add(hn::Add(hn::Mul(ax, bx), hn::Mul(ay, by)), hn::Mul(az, bz));
+    };
+    const Number cx = hn::Sub(load(b.px + i), load(a.px + i));
+    const Number cy = hn::Sub(load(b.py + i), load(a.py + i));
+    const Number cz = hn::Sub(load(b.pz + i), load(a.pz + i));
+    const Number ax = load(a.nx + i);
+    const Number ay = load(a.ny + i);
+    const Number az = load(a.nz + i);
+    const Number bx = load(b.nx + i);
+    const Number by = load(b.ny + i);
+    const Number bz = load(b.nz + i);
+    const Number mx = hn::Add(bx, ax);
+    const Number my = hn::Add(by, ay);
+    const Number mz = hn::Add(bz, az);
+    const Number along = dot(cx, cy, cz, mx, my, mz);
+    const Number chord_squared = dot(cx, cy, cz, cx, cy, cz);
+    const Number normal_squared = dot(mx, my, mz, mx, my, mz);
+    const Number sine_squared = hn::Set(kFloats, settings.chord_sine * settings.chord_sine);
+    const Number least_squared = hn::Set(kFloats, settings.least_jump * settings.least_jump);
+    const Number bound =
+        hn::Mul(hn::Max(hn::Mul(sine_squared, chord_squared), least_squared), normal_squared);
+    const Number turn = dot(ax, ay, az, bx, by, bz);
+    broken = bits_of(kFloats, hn::Gt(hn::Mul(along, along), bound));
+    bent = bits_of(kFloats, hn::Lt(turn, hn::Set(kFloats, settings.crease_cosine)));
+}
+
+/// Sixteen edges from the points on that the rows begin with.
+HWY_INLINE Suspects compare_some(const GridRow& a, const GridRow& b, std::uint32_t wanted,
+                                 const DetectSettings& settings) {
+    Suspects found{};
+    std::uint32_t hit = 0;
+    constexpr auto kStep = static_cast<int>(hn::MaxLanes(Floats()));
+    for (int i = 0; i < kLanes; i += kStep) {
+        const auto first = hn::LoadU(kIds, a.id + i);
+        const auto second = hn::LoadU(kIds, b.id + i);
+        found.id |= bits_of(kIds, hn::Ne(first, second)) << i;
+        hit |= bits_of(kIds, hn::Ne(first, hn::Set(kIds, kBackground))) << i;
     }
-    std::memset(codes, 0, static_cast<std::size_t>(count));
-    const auto [aid, apx, apy, apz, anx, any, anz] = a;
-    const auto [bid, bpx, bpy, bpz, bnx, bny, bnz] = b;
-    const float sine_squared = settings.chord_sine * settings.chord_sine;
-    const float cosine = settings.crease_cosine;
-    const float least_squared = settings.least_jump * settings.least_jump;
-    const auto depth_code = settings.depths ? static_cast<std::uint32_t>(Suspicion::depth) : 0U;
-    const auto normal_code = settings.normals ? static_cast<std::uint32_t>(Suspicion::normal) : 0U;
-    for (int i = begin; i < end; ++i) {
-        const float cx = bpx[i] - apx[i];
-        const float cy = bpy[i] - apy[i];
-        const float cz = bpz[i] - apz[i];
-        const float mx = bnx[i] + anx[i];
-        const float my = bny[i] + any[i];
-        const float mz = bnz[i] + anz[i];
-        const float along = cx * mx + cy * my + cz * mz;
-        const float chord_squared = cx * cx + cy * cy + cz * cz;
-        const float normal_squared = mx * mx + my * my + mz * mz;
-        const float bound = std::max(sine_squared * chord_squared, least_squared) * normal_squared;
-        const float turn = anx[i] * bnx[i] + any[i] * bny[i] + anz[i] * bnz[i];
-        const std::uint32_t bent = turn < cosine ? normal_code : 0U;
-        const std::uint32_t broken = along * along > bound ? depth_code : bent;
-        const std::uint32_t same = aid[i] != kBackground ? broken : 0U;
-        codes[i] = static_cast<std::uint8_t>(aid[i] != bid[i] ? 1U : same);
+    found.id &= wanted;
+    hit &= wanted & ~found.id;
+    if (hit == 0 || !(settings.depths || settings.normals)) return found;
+    for (int i = 0; i < kLanes; i += kStep) {
+        std::uint32_t broken = 0;
+        std::uint32_t bent = 0;
+        compare_surfaces(a, b, i, settings, broken, bent);
+        found.depth |= broken << i;
+        found.normal |= bent << i;
+    }
+    found.depth = settings.depths ? found.depth & hit : 0;
+    found.normal = settings.normals ? found.normal & hit & ~found.depth : 0;
+    return found;
+}
+
+/// The edges between the first `count` points of two rows, sixteen an entry.
+void compare(const SampleGrid& grid, std::size_t a, std::size_t b, int count,
+             const DetectSettings& settings, Suspects* found) {
+    for (int i = 0; i < count; i += kLanes) {
+        const auto first = static_cast<std::size_t>(i);
+        const std::uint32_t wanted = (1U << std::min(count - i, kLanes)) - 1;
+        *found++ =
+            compare_some(GridRow(grid, a + first), GridRow(grid, b + first), wanted, settings);
     }
 }
 
-static_assert(static_cast<int>(Suspicion::id) == 1);
+}  // namespace ink::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
 
-/// The same where the ID is all that counts.
-INKTRACE_MULTIVERSION
-void compare_ids(const GeometryId* __restrict a, const GeometryId* __restrict b, int count,
-                 std::uint8_t* __restrict codes) {
-    for (int i = 0; i < count; ++i) codes[i] = a[i] != b[i] ? 1 : 0;
-}
+#if HWY_ONCE
 
-/// `codes` has zeros behind its `count` entries, up to a multiple of eight.
-void collect(const std::uint8_t* codes, int count, int j, bool down,
-             std::vector<SuspectEdge>& edges) {
-    for (int i = 0; i < count; i += 8) {
-        std::uint64_t eight = 0;
-        std::memcpy(&eight, codes + i, 8);
-        for (; eight != 0;) {
-            const int byte = std::countr_zero(eight) / 8;
-            const auto code = static_cast<std::uint8_t>(eight >> (8 * byte));
-            edges.push_back({static_cast<std::uint16_t>(i + byte), static_cast<std::uint16_t>(j),
-                             down, static_cast<Suspicion>(code)});
-            eight &= ~(std::uint64_t{0xFF} << (8 * byte));
+namespace ink {
+
+HWY_EXPORT(compare);
+
+namespace {
+
+void collect(std::span<const Suspects> row, int j, bool down, std::vector<SuspectEdge>& edges) {
+    int i = 0;
+    for (const auto [id, depth, normal] : row) {
+        for (std::uint32_t rest = id | depth | normal; rest != 0; rest &= rest - 1) {
+            const std::uint32_t bit = rest & (0U - rest);
+            const Suspicion suspicion = (id & bit) != 0      ? Suspicion::id
+                                        : (depth & bit) != 0 ? Suspicion::depth
+                                                             : Suspicion::normal;
+            edges.push_back({static_cast<std::uint16_t>(i + std::countr_zero(rest)),
+                             static_cast<std::uint16_t>(j), down, suspicion});
         }
+        i += kLanes;
     }
 }
 
@@ -103,23 +159,20 @@ void collect(const std::uint8_t* codes, int count, int j, bool down,
 void detect(const SampleGrid& grid, const DetectSettings& settings,
             std::vector<SuspectEdge>& edges) {
     edges.clear();
-    const bool ids_only = !settings.depths && !settings.normals;
-    const auto compare = [&](const Row& a, const Row& b, int count, std::uint8_t* codes) {
-        if (ids_only) return compare_ids(a.id, b.id, count, codes);
-        compare_rows(a, b, count, settings, codes);
+    std::vector<Suspects> found(static_cast<std::size_t>((grid.width + kLanes - 1) / kLanes));
+    const auto compare_rows = [&](std::size_t a, std::size_t b, int count, int j, bool down) {
+        HWY_DYNAMIC_DISPATCH(compare)(grid, a, b, count, settings, found.data());
+        const auto used = static_cast<std::size_t>((count + kLanes - 1) / kLanes);
+        collect(std::span(found).first(used), j, down, edges);
     };
-    std::vector<std::uint8_t> codes(static_cast<std::size_t>(grid.width) + kLanes);
     for (int j = 0; j < grid.height; ++j) {
-        const Row row(grid, grid.index(0, j));
-        const Row right(grid, grid.index(1, j));
-        compare(row, right, grid.width - 1, codes.data());
-        codes[static_cast<std::size_t>(grid.width) - 1] = 0;
-        collect(codes.data(), grid.width - 1, j, false, edges);
+        const std::size_t row = grid.index(0, j);
+        compare_rows(row, row + 1, grid.width - 1, j, false);
         if (j + 1 == grid.height) break;
-        const Row below(grid, grid.index(0, j + 1));
-        compare(row, below, grid.width, codes.data());
-        collect(codes.data(), grid.width, j, true, edges);
+        compare_rows(row, grid.index(0, j + 1), grid.width, j, true);
     }
 }
 
 }  // namespace ink
+
+#endif

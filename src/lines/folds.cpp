@@ -41,15 +41,16 @@ struct LooseEnd {
 class FoldMender {
   public:
     FoldMender(std::span<const Segment> lines, const Viewpoint& viewpoint, float spacing,
-               float width, const SampleFunction& sample, const AreaFunction& enter,
+               float width, std::span<const FoldWorker> workers, const FoldLoop& loop,
                const FoldSettings& settings)
         : lines_(lines),
           viewpoint_(viewpoint),
           spacing_(spacing),
           width_(width),
-          sample_(sample),
-          enter_(enter),
-          settings_(settings) {}
+          workers_(workers),
+          loop_(loop),
+          settings_(settings),
+          scratch_(workers.size()) {}
 
     FoldRepairs run() {
         for (std::uint32_t k = 0; k < lines_.size(); ++k) {
@@ -113,12 +114,12 @@ class FoldMender {
         return {range.begin(), range.end()};
     }
 
-    /// The nearest line of another group, no farther away than most of a lattice cell.
-    std::uint32_t line_near(Vec2f point, std::uint32_t group) {
+    /// The nearest line of another piece, no farther away than most of a lattice cell.
+    std::uint32_t line_near(Vec2f point, std::uint32_t piece) const {
         float least = 0.75F * spacing_;
         std::uint32_t best = kNone;
         squares_->near(point, [&](std::uint32_t k) {
-            if (is_fold(k) && root(k) == group) return;
+            if (is_fold(k) && pieces_[k] == piece) return;
             const float distance = length(nearest_on(lines_[k], point) - point);
             // Two segments may share the nearest point.
             if (distance > least || (distance == least && best != kNone && !before(k, best)))
@@ -145,7 +146,7 @@ class FoldMender {
             if (shared) continue;
             const auto [key, fold, at_b] = incidences_[n];
             const Vec2f point{std::get<1>(key), std::get<0>(key)};
-            if (line_near(point, root(fold)) != kNone) {
+            if (line_near(point, pieces_[fold]) != kNone) {
                 attached_[root(fold)] = 1;
                 tails_.push_back({fold, at_b});
                 continue;
@@ -179,18 +180,25 @@ class FoldMender {
         return -dot(sample.normal, viewpoint_.ray_direction(sample));
     }
 
+    /// What a worker needs while it looks at one square of the picture.
+    struct alignas(64) Scratch {
+        std::vector<LooseEnd*> active;
+        std::vector<Vec2f> centres, points;
+        std::vector<Sample> samples;
+    };
+
     /// Ends of one square of the picture in step, so that their rays are close together.
     void follow_valleys() {
         for_each_square(
             ends_, [](const LooseEnd& end) { return end.point; },
-            [&](std::span<LooseEnd> group) {
-                while (step(group)) {
+            [&](std::span<LooseEnd> group, std::size_t worker) {
+                while (step(group, worker)) {
                 }
             });
     }
 
     /// Sorts what lies on the picture by squares, says where the next rays go, and calls `visit`
-    /// for what lies in each square.
+    /// for what lies in each square, many at a time.
     template <class Thing, class Where, class Visit>
     void for_each_square(std::vector<Thing>& things, Where where, Visit visit) const {
         constexpr float kSide = 64.0F;
@@ -199,53 +207,65 @@ class FoldMender {
             return std::pair{std::floor(p.y / kSide), std::floor(p.x / kSide)};
         };
         std::ranges::stable_sort(things, {}, square);
-        for (std::size_t first = 0, last = 0; first < things.size(); first = last) {
-            Vec2f low = where(things[first]);
+        std::vector<std::size_t> starts;
+        for (std::size_t k = 0; k < things.size(); ++k) {
+            if (k == 0 || square(things[k]) != square(things[k - 1])) starts.push_back(k);
+        }
+        starts.push_back(things.size());
+        loop_(starts.size() - 1, [&](std::size_t k, std::size_t worker) {
+            const auto group = std::span(things).subspan(starts[k], starts[k + 1] - starts[k]);
+            Vec2f low = where(group[0]);
             Vec2f high = low;
-            for (; last < things.size() && square(things[last]) == square(things[first]); ++last) {
-                const Vec2f p = where(things[last]);
+            for (const Thing& thing : group) {
+                const Vec2f p = where(thing);
                 low = {std::min(low.x, p.x), std::min(low.y, p.y)};
                 high = {std::max(high.x, p.x), std::max(high.y, p.y)};
             }
             const float reach = 4.0F * spacing_;
-            if (enter_) enter_(low - Vec2f{reach, reach}, high + Vec2f{reach, reach});
-            visit(std::span(things).subspan(first, last - first));
-        }
+            enter(worker, low - Vec2f{reach, reach}, high + Vec2f{reach, reach});
+            visit(group, worker);
+        });
     }
 
-    bool step(std::span<LooseEnd> group) {
-        active_.clear();
-        centres_.clear();
+    void enter(std::size_t worker, Vec2f low, Vec2f high) const {
+        if (workers_[worker].enter) workers_[worker].enter(low, high);
+    }
+
+    bool step(std::span<LooseEnd> group, std::size_t worker) {
+        auto& [active, centres, points, samples] = scratch_[worker];
+        active.clear();
+        centres.clear();
         for (LooseEnd& end : group) {
             if (!end.open) continue;
-            active_.push_back(&end);
+            active.push_back(&end);
             const Vec2f from = end.path.empty() ? end.point : end.path.back();
-            centres_.push_back(from + end.way * spacing_);
+            centres.push_back(from + end.way * spacing_);
         }
-        if (active_.empty()) return false;
-        look_across(0.5F, true);
-        look_across(0.125F, false);
-        for (std::size_t n = 0; n < active_.size(); ++n) {
-            if (active_[n]->open) go_on(*active_[n], centres_[n]);
+        if (active.empty()) return false;
+        look_across(0.5F, true, worker);
+        look_across(0.125F, false, worker);
+        for (std::size_t n = 0; n < active.size(); ++n) {
+            if (active[n]->open) go_on(*active[n], centres[n]);
         }
         return true;
     }
 
     /// Moves each centre to the lowest of the points beside it. Where there is no valley, the end
     /// is given up.
-    void look_across(float apart, bool wide) {
-        points_.clear();
-        for (std::size_t n = 0; n < active_.size(); ++n) {
-            const Vec2f aside = left_of(active_[n]->way) * (apart * spacing_);
+    void look_across(float apart, bool wide, std::size_t worker) {
+        auto& [active, centres, points, samples] = scratch_[worker];
+        points.clear();
+        for (std::size_t n = 0; n < active.size(); ++n) {
+            const Vec2f aside = left_of(active[n]->way) * (apart * spacing_);
             for (int k = -kHalf; k <= kHalf; ++k) {
-                points_.push_back(centres_[n] + aside * static_cast<float>(k));
+                points.push_back(centres[n] + aside * static_cast<float>(k));
             }
         }
-        samples_.resize(points_.size());
-        sample_(points_, samples_);
-        for (std::size_t n = 0; n < active_.size(); ++n) {
-            LooseEnd& end = *active_[n];
-            const std::span<const Sample> seen = std::span(samples_).subspan(n * kAcross, kAcross);
+        samples.resize(points.size());
+        workers_[worker].sample(points, samples);
+        for (std::size_t n = 0; n < active.size(); ++n) {
+            LooseEnd& end = *active[n];
+            const std::span<const Sample> seen = std::span(samples).subspan(n * kAcross, kAcross);
             std::array<float, kAcross> heights{};
             for (std::size_t k = 0; k < kAcross; ++k) {
                 if (seen[k].id != lines_[end.fold].owner) end.open = false;
@@ -260,11 +280,11 @@ class FoldMender {
                          heights[lowest] > settings_.most_facing)) {
                 end.open = false;
             }
-            centres_[n] = points_[n * kAcross + lowest];
+            centres[n] = points[n * kAcross + lowest];
         }
     }
 
-    void go_on(LooseEnd& end, Vec2f point) {
+    void go_on(LooseEnd& end, Vec2f point) const {
         const Vec2f from = end.path.empty() ? end.point : end.path.back();
         const Vec2f way = unit(point - from);
         if (dot(way, end.way) < 0.7F) {
@@ -274,7 +294,7 @@ class FoldMender {
         end.way = unit(end.way + way);
         end.path.push_back(point);
         const float gone = spacing_ * static_cast<float>(end.path.size());
-        const std::uint32_t near = line_near(point, root(end.fold));
+        const std::uint32_t near = line_near(point, pieces_[end.fold]);
         if (near != kNone) {
             end.open = false;
             if (is_fold(near) || gone <= settings_.longest_to_other * width_) end.reached = near;
@@ -349,13 +369,12 @@ class FoldMender {
     }
 
     bool is_steep(const LooseEnd& end, std::span<const Vec2f> path) {
-        samples_.resize(path.size());
-        if (enter_) {
-            const float reach = settings_.longest_leap * width_;
-            enter_(end.point - Vec2f{reach, reach}, end.point + Vec2f{reach, reach});
-        }
-        sample_(path, samples_);
-        return std::ranges::all_of(samples_, [&](const Sample& sample) {
+        std::vector<Sample>& samples = scratch_[0].samples;
+        samples.resize(path.size());
+        const float reach = settings_.longest_leap * width_;
+        enter(0, end.point - Vec2f{reach, reach}, end.point + Vec2f{reach, reach});
+        workers_[0].sample(path, samples);
+        return std::ranges::all_of(samples, [&](const Sample& sample) {
             return sample.id == lines_[end.fold].owner &&
                    facing(sample) <= settings_.most_facing_leapt;
         });
@@ -499,38 +518,40 @@ class FoldMender {
         std::vector<float> most(lines_.size());
         std::vector<std::uint32_t> measured;
         std::ranges::copy_if(folds_, std::back_inserter(measured), asked);
+        std::vector<float> depths(lines_.size());
         for_each_square(
             measured, [&](std::uint32_t k) { return (lines_[k].a + lines_[k].b) * 0.5F; },
-            [&](std::span<const std::uint32_t> group) {
-                measure_depths(group);
-                for (std::size_t n = 0; n < group.size(); ++n) {
-                    float& depth = most[root(group[n])];
-                    depth = std::max(depth, depths_[n]);
-                }
+            [&](std::span<const std::uint32_t> group, std::size_t worker) {
+                measure_depths(group, worker, depths);
             });
+        for (const std::uint32_t k : measured) {
+            float& depth = most[root(k)];
+            depth = std::max(depth, depths[k]);
+        }
         return most;
     }
 
     static constexpr float kBottomless = 1e9F;  // another geometry
 
-    void measure_depths(std::span<const std::uint32_t> folds) {
-        points_.clear();
+    void measure_depths(std::span<const std::uint32_t> folds, std::size_t worker,
+                        std::vector<float>& depths) {
+        auto& [active, centres, points, samples] = scratch_[worker];
+        points.clear();
         for (const std::uint32_t k : folds) {
             const Vec2f middle = (lines_[k].a + lines_[k].b) * 0.5F;
             const Vec2f aside = left_of(unit(lines_[k].b - lines_[k].a)) * (0.25F * spacing_);
-            points_.push_back(middle + aside);
-            points_.push_back(middle - aside);
+            points.push_back(middle + aside);
+            points.push_back(middle - aside);
         }
-        samples_.resize(points_.size());
-        sample_(points_, samples_);
-        depths_.clear();
+        samples.resize(points.size());
+        workers_[worker].sample(points, samples);
         for (std::size_t n = 0; n < folds.size(); ++n) {
-            const Sample& a = samples_[2 * n];
-            const Sample& b = samples_[2 * n + 1];
+            const Sample& a = samples[2 * n];
+            const Sample& b = samples[2 * n + 1];
             const float pixel =
-                length_between(points_[2 * n], points_[2 * n + 1], a) / (0.5F * spacing_);
+                length_between(points[2 * n], points[2 * n + 1], a) / (0.5F * spacing_);
             const bool one = a.id == b.id;
-            depths_.push_back(one ? depth_between(a, b) / pixel : kBottomless);
+            depths[folds[n]] = one ? depth_between(a, b) / pixel : kBottomless;
         }
     }
 
@@ -553,9 +574,10 @@ class FoldMender {
     std::span<const Segment> lines_;
     const Viewpoint& viewpoint_;
     float spacing_, width_;
-    const SampleFunction& sample_;
-    const AreaFunction& enter_;
+    std::span<const FoldWorker> workers_;
+    const FoldLoop& loop_;
     const FoldSettings& settings_;
+    std::vector<Scratch> scratch_;                ///< of each worker
     std::vector<std::uint32_t> folds_;            ///< the self-occlusions among the lines
     mutable std::vector<std::uint32_t> parents_;  ///< paths get shorter as they are walked
     std::vector<std::uint32_t> pieces_;   ///< of each line: its group before any bridge was built
@@ -565,10 +587,6 @@ class FoldMender {
     std::vector<LooseEnd> ends_;
     /// Ends of folds, by their segments, that may double another one.
     std::vector<FoldTail> tails_;
-    std::vector<LooseEnd*> active_;
-    std::vector<Vec2f> centres_, points_;
-    std::vector<Sample> samples_;
-    std::vector<float> depths_;  ///< of the folds measured last, pixels
     FoldRepairs repairs_;
     std::vector<std::uint32_t> owners_;  ///< a bridge: the fold at which it starts
 };
@@ -576,9 +594,18 @@ class FoldMender {
 }  // namespace
 
 FoldRepairs mend_folds(std::span<const Segment> lines, const Viewpoint& viewpoint, float spacing,
-                       float width, const SampleFunction& sample, const AreaFunction& enter,
+                       float width, std::span<const FoldWorker> workers, const FoldLoop& loop,
                        const FoldSettings& settings) {
-    return FoldMender(lines, viewpoint, spacing, width, sample, enter, settings).run();
+    return FoldMender(lines, viewpoint, spacing, width, workers, loop, settings).run();
+}
+
+FoldRepairs mend_folds(std::span<const Segment> lines, const Viewpoint& viewpoint, float spacing,
+                       float width, const SampleFunction& sample, const FoldSettings& settings) {
+    const FoldWorker worker{sample, {}};
+    const FoldLoop one_by_one = [](std::size_t count, const auto& body) {
+        for (std::size_t k = 0; k < count; ++k) body(k, 0);
+    };
+    return mend_folds(lines, viewpoint, spacing, width, {&worker, 1}, one_by_one, settings);
 }
 
 }  // namespace ink

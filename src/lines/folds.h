@@ -42,15 +42,28 @@ struct FoldRepairs {
 /// Says that the next samples lie in this part of the screen, or near it.
 using AreaFunction = std::function<void(Vec2f low, Vec2f high)>;
 
+/// One thread's way to ask for samples. `enter` may be empty.
+struct FoldWorker {
+    SampleFunction sample;
+    AreaFunction enter;
+};
+
+/// Calls `body(k, worker)` for each k in [0, count), no two at one time with the same worker.
+using FoldLoop = std::function<void(
+    std::size_t count, const std::function<void(std::size_t k, std::size_t worker)>& body)>;
+
 /// On a mesh, and on a bumpy surface, the place where a surface hides itself breaks up: between two
 /// of its folds it is merely steep. Joins such pieces of self-occlusions along the steepest way
 /// from one to the next, and finds those that are too short and shallow to mean anything, or that
 /// double another one. `lines`
 /// are all of the picture's that are seen directly; `width` is that of a self-occlusion, in pixels.
-/// `enter` may be empty.
-/// The result does not depend on their order.
+/// The result depends neither on their order nor on how many workers there are.
 FoldRepairs mend_folds(std::span<const Segment> lines, const Viewpoint& viewpoint, float spacing,
-                       float width, const SampleFunction& sample, const AreaFunction& enter = {},
+                       float width, std::span<const FoldWorker> workers, const FoldLoop& loop,
+                       const FoldSettings& settings = {});
+/// The same with one worker.
+FoldRepairs mend_folds(std::span<const Segment> lines, const Viewpoint& viewpoint, float spacing,
+                       float width, const SampleFunction& sample,
                        const FoldSettings& settings = {});
 
 }  // namespace ink

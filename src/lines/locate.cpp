@@ -37,8 +37,6 @@ float discontinuity(const Sample& a, const Sample& b, float scale) {
     return depth_jump(a, b) + 0.5F * scale * turn(a, b);
 }
 
-constexpr float kRounding = 4e-6F;  // of positions, in a scene of size 1
-
 constexpr auto kRadiansPerDegree = static_cast<float>(std::numbers::pi / 180.0);
 
 float smoothstep(float from, float to, float x) {
@@ -66,12 +64,12 @@ bool is_curved(const Sample& sample) {
 
 bool same_surface(const Sample& a, const Sample& b) { return a.id == b.id && a.ball == b.ball; }
 
+}  // namespace
+
 float crease_strength(const LocateSettings& settings, float angle) {
     return smoothstep(settings.crease_min_deg * kRadiansPerDegree,
                       settings.crease_full_deg * kRadiansPerDegree, angle);
 }
-
-}  // namespace
 
 bool needs_check(const LocateSettings& settings, const Prediction& p) {
     using Kind = Prediction::Kind;
@@ -374,7 +372,7 @@ Locator::Depths Locator::depths_between(const Interval& interval) const {
 /// Each surface goes on as its tangent plane: where they cross in between, b's lies behind a at the
 /// first end and before it at the last, or the other way round.
 bool Locator::planes_meet(const Interval& interval) const {
-    const float contact = kRounding + across(interval);
+    const float contact = kPositionRounding + across(interval);
     if (gap(interval) <= contact) return true;
     const auto [at_a, at_b] = depths_between(interval);
     const float beyond = settings_.meeting_slack * (at_b - at_a);
@@ -387,14 +385,14 @@ bool Locator::planes_meet(const Interval& interval) const {
 bool Locator::may_meet(const Interval& interval) const {
     if (planes_meet(interval)) return true;
     const float width = across(interval);
-    return gap(interval) <= kRounding + width * (1.0F + 2.0F * steeper_slope(interval));
+    return gap(interval) <= kPositionRounding + width * (1.0F + 2.0F * steeper_slope(interval));
 }
 
 /// Whether the nearer surface's triangle ends on the way before its plane meets the other one's: at
 /// a limb of a mesh it ends at an edge, beyond which the surface turns away.
 bool Locator::ends_before(const Interval& interval) const {
     // Within one mesh, two triangles meet just where they end.
-    if (!way_out_ || interval.at_a.id == interval.at_b.id || gap(interval) <= kRounding ||
+    if (!way_out_ || interval.at_a.id == interval.at_b.id || gap(interval) <= kPositionRounding ||
         steeper_slope(interval) <= settings_.steep_slope) {
         return false;
     }

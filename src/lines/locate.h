@@ -66,6 +66,12 @@ struct Crossing {
     bool first_in_front = true;       ///< whether that is the first end's side
 };
 
+/// Rounding of positions, in a scene of size 1.
+inline constexpr float kPositionRounding = 4e-6F;
+
+/// Of a crease at which the surface turns by an angle, radians.
+float crease_strength(const LocateSettings& settings, float angle);
+
 /// One side of a predicted crossing.
 struct PredictedSide {
     GeometryId id = kBackground;

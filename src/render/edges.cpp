@@ -88,6 +88,7 @@ Edges::Edges(const Pipeline& shared)
     : pipeline(shared),
       q(shared.settings.lattice_points()),
       surfaces(shared.scene, shared.settings.shading.normals),
+      mesh_walk(shared.scene, shared.camera.projection(), shared.settings.shading.normals),
       draw_lines(shared.lines.ink),
       find_lines(draw_lines || shared.lines.drawing != nullptr),
       has_meshes(std::ranges::any_of(

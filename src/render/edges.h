@@ -12,6 +12,7 @@
 #include "render/edge_smoothing.h"
 #include "render/pipeline.h"
 #include "render/tiles.h"
+#include "sampling/mesh_walk.h"
 #include "sampling/samples.h"
 #include "sampling/surfaces.h"
 
@@ -57,6 +58,7 @@ struct Edges {
     const Pipeline& pipeline;
     int q;  ///< lattice points along a pixel's side
     Surfaces surfaces;
+    MeshWalk mesh_walk;
     bool draw_lines;  ///< on the film
     bool find_lines;  ///< for the film, or as data
     bool has_meshes;

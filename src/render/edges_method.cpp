@@ -118,7 +118,7 @@ FoundLines find_lines(const Edges& edges, WorkLoop& loop, RenderStats& stats) {
     });
 
     finish_fringes(edges, found.tiles, loop);
-    if (edges.mends_lines()) stats += mend_lines(edges, found.tiles, found.toned);
+    if (edges.mends_lines()) stats += mend_lines(edges, finders, found.tiles, found.toned);
     found.thinning = thinning_of(edges, finders);
     stats += total_of(finders);
     stats += total_of(behind);

@@ -379,13 +379,20 @@ void LineFinder::add_ridges(const Tile& tile) {
     for (const Segment& segment : segments_) keep_stroke(segment);
 }
 
-/// Between balls by computing, between others by asking for samples.
+/// Between balls and between meshes by computing, between others by asking for samples.
 void LineFinder::locate() {
     crossings_.clear();
     others_.clear();
     ball_edges_.clear();
+    mesh_edges_.clear();
     for (std::uint32_t k = 0; k < suspects_.size(); ++k) {
         const SuspectEdge& edge = suspects_[k];
+        MeshEdge meshes{k, {}, {}};
+        if (front_ && edges_.has_meshes && see_mesh(edge.i, edge.j, meshes.first) &&
+            see_mesh(edge.i + (edge.down ? 0 : 1), edge.j + (edge.down ? 1 : 0), meshes.second)) {
+            mesh_edges_.push_back(meshes);
+            continue;
+        }
         BallEdge& balls = ball_edges_.emplace_back();
         balls.edge = k;
         const bool computable =
@@ -397,6 +404,7 @@ void LineFinder::locate() {
         others_.push_back(k);
     }
     ball_locator_.locate(grid_, suspects_, ball_edges_, identify_, crossings_, others_);
+    mesh_locator_.locate(grid_, suspects_, mesh_edges_, identify_, crossings_, others_);
     locator_.locate_some(grid_, suspects_, others_, describe_, sample_, crossings_);
 }
 
@@ -413,6 +421,17 @@ bool LineFinder::see_ball(int i, int j, BallHit& hit) const {
     hit.t = hits.t[lane];
     hit.ball = edges_.surfaces.ball(object, hits.primitive[lane]);
     return static_cast<bool>(hit.ball);
+}
+
+/// Whether a point of the grid saw a mesh that can be walked on or the background, and where.
+bool LineFinder::see_mesh(int i, int j, SurfaceKey& key) const {
+    const std::uint32_t block = block_index(i / kBlockSide, j / kBlockSide);
+    if (block == kEmptyBlock) return true;
+    const int lane = j % kBlockSide * kBlockSide + i % kBlockSide;
+    const std::uint32_t object = hits_[block].object[lane];
+    if (object == kNoObject) return true;
+    key = {object, hits_[block].primitive[lane]};
+    return edges_.mesh_walk.knows(object);
 }
 
 void LineFinder::identify(std::span<const Vec2f> points, std::span<SurfaceKey> out) {

@@ -11,6 +11,7 @@
 #include "lines/density.h"
 #include "lines/detect.h"
 #include "lines/locate.h"
+#include "lines/mesh_locator.h"
 #include "lines/segment.h"
 #include "lines/tones.h"
 #include "render/edges.h"
@@ -84,6 +85,15 @@ class LineFinder {
               sample(points, out);
           }),
           ball_locator_(edges.viewpoint, edges.locate),
+          mesh_locator_(
+              edges.locate,
+              [&edges](Vec2f from, SurfaceKey first, Vec2f to, SurfaceKey second,
+                       const MeshChecks& checks, std::vector<SurfaceKey>& expected) {
+                  return edges.mesh_walk.cross(from, first, to, second, checks, expected);
+              },
+              [&edges](SurfaceKey key) {
+                  return edges.pipeline.ids.resolve(key.object, key.primitive);
+              }),
           identify_([this](std::span<const Vec2f> points, std::span<SurfaceKey> out) {
               identify(points, out);
           }),
@@ -135,6 +145,7 @@ class LineFinder {
     void describe(std::size_t point, Sample& sample) const;
     void locate();
     bool see_ball(int i, int j, BallHit& hit) const;
+    bool see_mesh(int i, int j, SurfaceKey& key) const;
     void identify(std::span<const Vec2f> points, std::span<SurfaceKey> out);
     void map_faces(const Tile& tile);
     void add_face_density(std::size_t block);
@@ -165,6 +176,7 @@ class LineFinder {
     Locator locator_;
     SampleFunction sample_;
     BallLocator ball_locator_;
+    MeshLocator mesh_locator_;
     IdentifyFunction identify_;
     SurfaceFunction describe_;
     std::optional<RidgeSearch> ridges_;
@@ -181,7 +193,8 @@ class LineFinder {
     std::vector<HitPacket> point_hits_;
     std::vector<SuspectEdge> suspects_;
     std::vector<BallEdge> ball_edges_;
-    std::vector<std::uint32_t> others_;  ///< suspects that are not between balls
+    std::vector<MeshEdge> mesh_edges_;
+    std::vector<std::uint32_t> others_;  ///< suspects between anything else
     std::vector<Crossing> crossings_;
     /// A point of the grid: kCrossedRight, kCrossedDown if its edge in that direction has a
     /// crossing; kMarked if lines between faces are searched for in its cell.

@@ -6,9 +6,9 @@
 #include <span>
 #include <utility>
 
+#include "base/parallel.h"
 #include "lines/folds.h"
 #include "lines/tones.h"
-#include "render/line_finder.h"
 
 namespace ink {
 
@@ -43,19 +43,15 @@ void make_strokes(const Edges& edges, TileLines& tile) {
     }
 }
 
-}  // namespace
-
-RenderStats mend_lines(const Edges& edges, std::vector<TileLines>& found,
-                       std::vector<std::vector<Segment>>& toned) {
-    RenderStats stats;
-    const Timer timer(stats.lines_ms);
+void mend(const Edges& edges, std::vector<std::unique_ptr<LineFinder>>& finders,
+          std::vector<TileLines>& found, std::vector<std::vector<Segment>>& toned) {
     const auto is_fold = [](const Segment& segment) {
         return segment.type == LineType::self_occlusion && segment.level == 0;
     };
     if (std::ranges::none_of(found, [&](const TileLines& tile) {
             return std::ranges::any_of(tile.segments, is_fold);
         })) {
-        return stats;
+        return;
     }
     std::vector<Segment> lines;
     std::vector<std::pair<std::uint32_t, std::uint32_t>> places;  // tile, and index within it
@@ -67,14 +63,19 @@ RenderStats mend_lines(const Edges& edges, std::vector<TileLines>& found,
             places.emplace_back(tile, k);
         }
     }
-    LineFinder finder(edges, nullptr);
     const float width = edges.ink.styles[edges.style_of(LineType::self_occlusion, 0)].width_px;
+    std::vector<FoldWorker> workers;
+    for (std::unique_ptr<LineFinder>& finder : finders) {
+        if (!finder) finder = std::make_unique<LineFinder>(edges, nullptr);
+        workers.push_back({finder->more_samples(), [&](Vec2f low, Vec2f high) {
+                               finder->enter({low.x, low.y, high.x, high.y});
+                           }});
+    }
     const FoldRepairs repairs =
-        mend_folds(lines, edges.viewpoint, 1.0F / static_cast<float>(edges.q), width,
-                   finder.more_samples(), [&](Vec2f low, Vec2f high) {
-                       finder.enter({low.x, low.y, high.x, high.y});
+        mend_folds(lines, edges.viewpoint, 1.0F / static_cast<float>(edges.q), width, workers,
+                   [&](std::size_t count, const auto& body) {
+                       parallel_for(count, static_cast<int>(workers.size()), body);
                    });
-    stats.rays = finder.stats().rays;
     if (edges.tones) repair(edges, repairs, lines, toned);
     std::vector<bool> changed(found.size());
     // Last first, so that the places of the others stay what they are.
@@ -92,6 +93,18 @@ RenderStats mend_lines(const Edges& edges, std::vector<TileLines>& found,
     for (std::size_t tile = 0; tile < found.size(); ++tile) {
         if (changed[tile]) make_strokes(edges, found[tile]);
     }
+}
+
+}  // namespace
+
+RenderStats mend_lines(const Edges& edges, std::vector<std::unique_ptr<LineFinder>>& finders,
+                       std::vector<TileLines>& found, std::vector<std::vector<Segment>>& toned) {
+    RenderStats stats;
+    {
+        const Timer timer(stats.lines_ms);
+        mend(edges, finders, found, toned);
+    }
+    stats.lines_ms *= static_cast<double>(finders.size());  // all threads are at it, or wait
     return stats;
 }
 

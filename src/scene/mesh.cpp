@@ -202,6 +202,7 @@ std::size_t drop_triangles_without_area(Mesh& mesh) {
 
 std::size_t weld(Mesh& mesh) {
     mesh.edge_flags.clear();
+    mesh.twins.clear();
     const std::size_t dropped = drop_triangles_without_area(mesh);
     const std::vector<std::uint32_t> firsts = firsts_at_positions(mesh.vertices);
     std::vector<std::uint32_t> numbers;  // of first vertices

@@ -33,6 +33,12 @@ struct Mesh {
     static constexpr unsigned kBoundaryEdge = 1;
     static constexpr unsigned kCreaseEdge = 1 << 3;
 
+    /// An edge, 3 * triangle + k: the same edge in the other triangle, or kNoTwin where there is
+    /// none, or kManyTwins where three or more triangles meet.
+    std::vector<std::uint32_t> twins;
+    static constexpr std::uint32_t kNoTwin = 0xFFFFFFFFU;
+    static constexpr std::uint32_t kManyTwins = kNoTwin - 1;
+
     bool is_boundary(std::size_t triangle, std::size_t edge) const {
         return (edge_flags[triangle] & kBoundaryEdge << edge) != 0;
     }
@@ -91,11 +97,11 @@ struct CreaseSettings {
     std::size_t fine_triangles = 500;
 };
 
-/// Classifies the edges (`edge_flags`) and computes normals that are continuous across every edge
-/// but boundaries and creases: the angle-weighted mean (Thuermer and Wuethrich 1998) over the
-/// triangles about a vertex that can be reached without crossing one. They become the
-/// `line_normals` of a mesh that has `corner_normals` already, else its `corner_normals`. The mesh
-/// must be welded. Linear in time and memory.
+/// Classifies the edges (`edge_flags`), pairs them (`twins`) and computes normals that are
+/// continuous across every edge but boundaries and creases: the angle-weighted mean (Thuermer and
+/// Wuethrich 1998) over the triangles about a vertex that can be reached without crossing one. They
+/// become the `line_normals` of a mesh that has `corner_normals` already, else its
+/// `corner_normals`. The mesh must be welded. Linear in time and memory.
 void smooth_normals(Mesh& mesh, const CreaseSettings& settings = {});
 
 }  // namespace ink

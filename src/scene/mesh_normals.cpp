@@ -97,7 +97,9 @@ class NormalSmoother {
 }  // namespace
 
 void smooth_normals(Mesh& mesh, const CreaseSettings& settings) {
-    smooth_normals(mesh, MeshTopology(mesh), settings);
+    MeshTopology topology(mesh);
+    smooth_normals(mesh, topology, settings);
+    mesh.twins = std::move(topology).take_twins();
 }
 
 void smooth_normals(Mesh& mesh, const MeshTopology& topology, const CreaseSettings& settings) {

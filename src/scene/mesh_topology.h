@@ -3,8 +3,8 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "scene/mesh.h"
@@ -20,8 +20,8 @@ constexpr Corner previous(Corner c) { return c % 3 == 0 ? c + 2 : c - 1; }
 /// Which corners and edges of a welded mesh belong together.
 class MeshTopology {
   public:
-    static constexpr Corner kBoundary = std::numeric_limits<Corner>::max();
-    static constexpr Corner kBranching = kBoundary - 1;  ///< three or more triangles meet
+    static constexpr Corner kBoundary = Mesh::kNoTwin;
+    static constexpr Corner kBranching = Mesh::kManyTwins;  ///< three or more triangles meet
 
     /// Linear in time and memory. Keeps a reference to `mesh`.
     explicit MeshTopology(const Mesh& mesh);
@@ -33,6 +33,8 @@ class MeshTopology {
     }
     /// The same edge in the other triangle, or kBoundary, or kBranching.
     Corner twin(Corner edge) const { return twins_[edge]; }
+    /// The twins of all edges; nothing else may be asked of the topology afterwards.
+    std::vector<Corner> take_twins() && { return std::move(twins_); }
     bool has_twin(Corner edge) const { return twins_[edge] < kBranching; }
     /// Whether the other triangle runs the edge in the same direction, so that its normal points to
     /// the other side of the surface.
@@ -64,7 +66,8 @@ std::vector<std::uint8_t> classify_edges(const Mesh& mesh, const MeshTopology& t
                                          std::span<const Facet> facets,
                                          const CreaseSettings& settings);
 
-/// The functions of mesh.h for a mesh whose topology is known. `stitch` makes a new one if it must.
+/// The functions of mesh.h for a mesh whose topology is known. `stitch` makes a new one if it must,
+/// `smooth_normals` leaves the twins where they are.
 std::size_t stitch(Mesh& mesh, MeshTopology& topology, const StitchSettings& settings = {});
 void smooth_normals(Mesh& mesh, const MeshTopology& topology, const CreaseSettings& settings = {});
 

@@ -1,0 +1,69 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "lines/detect.h"
+#include "lines/locate.h"
+#include "sampling/mesh_crossing.h"
+#include "sampling/samples.h"
+#include "sampling/surface_key.h"
+
+namespace ink {
+
+/// A suspect edge each of whose ends sees a mesh or the background.
+struct MeshEdge {
+    std::uint32_t edge;  ///< index of the suspect edge
+    SurfaceKey first, second;
+};
+
+/// The geometry that a surface belongs to.
+using GeometryFunction = std::function<GeometryId(SurfaceKey)>;
+
+/// Locates what Locator would between meshes whose edges know their triangles, without samples of
+/// its own: the crossing follows from the mesh, and one ray beside it is asked what it hits. If
+/// that is another fold of the surface that ends, the search goes on from there. What that does not
+/// settle is left to Locator.
+class MeshLocator {
+  public:
+    MeshLocator(const LocateSettings& settings, MeshCrossingFunction cross, GeometryFunction id_of)
+        : settings_(settings), cross_(std::move(cross)), id_of_(std::move(id_of)) {}
+
+    /// Adds crossings, and to `left` the suspect edges that are left.
+    void locate(const SampleGrid& grid, std::span<const SuspectEdge> suspects,
+                std::span<const MeshEdge> edges, const IdentifyFunction& identify,
+                std::vector<Crossing>& crossings, std::vector<std::uint32_t>& left);
+
+  private:
+    /// The part of a lattice edge that is looked at, and what was found there.
+    struct Search {
+        Vec2f a, b;
+        SurfaceKey first, second;  ///< seen there
+        MeshCrossing mesh{};
+        Crossing crossing{};
+    };
+    enum class Verdict : std::uint8_t { nothing, line, unsettled };
+
+    void start(const SampleGrid& grid, std::span<const SuspectEdge> suspects,
+               std::span<const MeshEdge> edges);
+    void look(float spacing, std::vector<Crossing>& crossings, std::vector<std::uint32_t>& left);
+    void check(const IdentifyFunction& identify, std::vector<Crossing>& crossings,
+               std::vector<std::uint32_t>& left);
+    Verdict classify(float spacing, Search& search) const;
+    Verdict classify_limb(float spacing, Search& search) const;
+    bool is_confirmed(const MeshCrossing& mesh, SurfaceKey seen) const;
+    bool goes_on(Search& search, Vec2f checked, SurfaceKey seen) const;
+
+    LocateSettings settings_;
+    MeshCrossingFunction cross_;
+    GeometryFunction id_of_;
+    std::vector<Search> open_;
+    std::vector<Search> checked_;  ///< those that a ray must confirm
+    std::vector<Vec2f> points_;
+    std::vector<SurfaceKey> expected_, seen_;
+};
+
+}  // namespace ink
