@@ -299,7 +299,8 @@ Tally tally(const Seen& seen) {
         const float behind = seen.at(a + (b - a) * (at + (first ? kBeside : -kBeside))).t;
         // Farther beside it the check may miss something narrow.
         const bool checked_beside = std::abs(crossing.checked_at - at) < 0.02F;
-        const bool right = std::abs(front - crossing.t) < 0.3F * kDeep &&
+        // The last facet may be all but edge on.
+        const bool right = std::abs(front - crossing.t) < kDeep &&
                            (!checked_beside ||
                             (std::isinf(crossing.gap)
                                  ? std::isinf(behind)

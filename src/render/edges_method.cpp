@@ -1,6 +1,7 @@
 #include "render/edges_method.h"
 
 #include <memory>
+#include <optional>
 
 #include "base/parallel.h"
 #include "render/hidden_lines.h"
@@ -141,11 +142,18 @@ void add_hidden_strokes(const Edges& edges, FoundLines& found) {
 }
 
 void draw_lines(const Edges& edges, const FoundLines& found, WorkLoop& loop, RenderStats& stats) {
+    std::optional<ScreenVertices> vertices;
+    if (found.faces) {
+        const Pipeline& pipeline = edges.pipeline;
+        vertices.emplace(pipeline.scene, pipeline.camera.projection(), pipeline.settings.size,
+                         loop.threads());
+    }
     std::vector<std::unique_ptr<LineDrawer>> drawers(static_cast<std::size_t>(loop.threads()));
     loop.run(edges.draw_tiles.size(), [&](std::size_t i, std::size_t worker) {
         if (!drawers[worker]) {
             drawers[worker] = std::make_unique<LineDrawer>(edges, found.thinning,
-                                                           found.faces ? &*found.faces : nullptr);
+                                                           found.faces ? &*found.faces : nullptr,
+                                                           vertices ? &*vertices : nullptr);
         }
         drawers[worker]->draw(edges.draw_tiles[i], found.tiles);
     });

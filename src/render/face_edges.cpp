@@ -4,9 +4,8 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <span>
 #include <utility>
-
-#include "base/multiversion.h"
 
 namespace ink {
 
@@ -14,61 +13,7 @@ namespace {
 
 /// Parts of edges that are nearer to the eye than this, in widths of a pixel at the edge's farther
 /// end, are left out.
-constexpr double kNearest = 1e-3;
-
-/// The nearest edges so far.
-struct Search {
-    Lanes<float> squared;  ///< distance
-    Lanes<float> vx, vy;   ///< from the edge's nearest point to the pixel
-    Lanes<float> nx, ny;   ///< across the edge; 0 where its end is nearest
-    Lanes<float> t;
-};
-
-/// Distances to a face's edges from those pixels, the upper left one's centre at (x, y), that see
-/// one of its triangles. They leave `open`.
-INKTRACE_MULTIVERSION
-void approach(std::span<const ScreenEdge> edges, TriangleRange face, float x, float y,
-              Lanes<std::uint32_t>& open, Search& search) {
-    Lanes<float> most;
-    for (int i = 0; i < kLanes; ++i) {
-        const bool own = open[i] >= face.begin && open[i] < face.end;
-        open[i] = own ? FaceMap::kNone : open[i];
-        most[i] = own ? kInfinity : 0.0F;  // below any squared distance
-    }
-    for (const ScreenEdge& edge : edges) {
-        const auto [a, along, length, t] = edge;
-        for (int i = 0; i < kLanes; ++i) {
-            const float rx = x + static_cast<float>(i % kBlockSide) - a.x;
-            const float ry = y + static_cast<float>(i / kBlockSide) - a.y;
-            const float s = rx * along.x + ry * along.y;
-            const float nearest = std::min(std::max(s, 0.0F), length);
-            const float vx = rx - nearest * along.x;
-            const float vy = ry - nearest * along.y;
-            const float squared = vx * vx + vy * vy;
-            const bool better = squared < most[i];
-            const bool inside = nearest == s;
-            most[i] = better ? squared : most[i];
-            search.squared[i] = better ? squared : search.squared[i];
-            search.vx[i] = better ? vx : search.vx[i];
-            search.vy[i] = better ? vy : search.vy[i];
-            search.nx[i] = better ? (inside ? -along.y : 0.0F) : search.nx[i];
-            search.ny[i] = better ? (inside ? along.x : 0.0F) : search.ny[i];
-            search.t[i] = better ? t : search.t[i];
-        }
-    }
-}
-
-INKTRACE_MULTIVERSION
-void finish(const Search& search, float reach, NearestEdges& nearest) {
-    for (int i = 0; i < kLanes; ++i) {
-        const float distance = std::sqrt(search.squared[i]);
-        const float inverse = 1.0F / std::max(distance, 1e-6F);
-        const bool end = search.nx[i] == 0.0F && search.ny[i] == 0.0F;
-        nearest.nx[i] = end ? search.vx[i] * inverse : search.nx[i];
-        nearest.ny[i] = end ? search.vy[i] * inverse : search.ny[i];
-        nearest.distance[i] = distance < reach ? distance : kInfinity;
-    }
-}
+constexpr float kNearest = 1e-3F;
 
 }  // namespace
 
@@ -80,49 +25,51 @@ void FaceEdges::begin() {
 
 bool FaceEdges::measure(int x, int y, float reach, NearestEdges& nearest) {
     if (!map_.get(x, y, nearest.triangle)) return false;
-    Search search{};
-    search.squared.fill(kInfinity);
-    Lanes<std::uint32_t> open = nearest.triangle;
-    for (int lane = 0; lane < kLanes; ++lane) {
-        if (open[lane] == FaceMap::kNone) continue;
-        const FaceMap::Triangle seen = map_.triangle(open[lane]);
-        const Mesh& mesh = *map_.mesh(seen.object);
-        const TriangleRange face = triangles_of(mesh, seen.primitive);
+    near_.clear();
+    Lanes<std::uint32_t> triangles;
+    const std::size_t count = find_distinct(nearest.triangle, FaceMap::kNone, triangles);
+    for (const std::uint32_t triangle : std::span(triangles).first(count)) {
+        const FaceMap::Triangle seen = map_.triangle(triangle);
+        const TriangleRange face = triangles_of(*map_.mesh(seen.object), seen.primitive);
         // Counted over all meshes.
-        const std::uint32_t first = open[lane] - (seen.primitive - face.begin);
+        const std::uint32_t first = triangle - (seen.primitive - face.begin);
         const TriangleRange numbers{first, first + (face.end - face.begin)};
-        std::span<const ScreenEdge> edges = edges_of(first, mesh, face);
-        if (edges.size() > 3) edges = near_edges(edges, x, y, reach);
-        approach(edges, numbers, static_cast<float>(x) + 0.5F, static_cast<float>(y) + 0.5F, open,
-                 search);
+        const bool several = face.end - face.begin > 1;
+        const auto is_own = [first](const FaceEdge& edge) { return edge.begin == first; };
+        if (several && std::ranges::any_of(near_, is_own)) continue;
+        collect(edges_of(first, seen, face), numbers, x, y, reach);
     }
-    finish(search, reach, nearest);
+    if (near_.empty()) return false;
+    Lanes<float> vx;
+    Lanes<float> vy;
+    find_nearest(near_, static_cast<float>(x) + 0.5F, static_cast<float>(y) + 0.5F, reach, nearest,
+                 vx, vy);
     if (map_.any_marked(x, y, reach)) {
         for (int i = 0; i < kLanes; ++i) {
-            const Vec2f foot{static_cast<float>(x + i % kBlockSide) + 0.5F - search.vx[i],
-                             static_cast<float>(y + i / kBlockSide) + 0.5F - search.vy[i]};
+            const Vec2f foot{static_cast<float>(x + i % kBlockSide) + 0.5F - vx[i],
+                             static_cast<float>(y + i / kBlockSide) + 0.5F - vy[i]};
             if (nearest.distance[i] < kInfinity && map_.marked(foot)) {
                 nearest.distance[i] = kInfinity;
             }
         }
     }
-    nearest.t = search.t;
     return std::ranges::any_of(nearest.distance, [](float d) { return d < kInfinity; });
 }
 
-/// Those of a large face that matter to a block.
-std::span<const ScreenEdge> FaceEdges::near_edges(std::span<const ScreenEdge> edges, int x, int y,
-                                                  float reach) {
-    near_.clear();
+/// Of a large face, those edges only that matter to a block.
+void FaceEdges::collect(std::span<const ScreenEdge> edges, TriangleRange numbers, int x, int y,
+                        float reach) {
     const Vec2f middle{static_cast<float>(x) + 0.5F * kBlockSide,
                        static_cast<float>(y) + 0.5F * kBlockSide};
     const float most = reach + 0.5F * kBlockSide * std::numbers::sqrt2_v<float>;
     for (const ScreenEdge& edge : edges) {
-        const Vec2f r = middle - edge.a;
-        const Vec2f v = r - edge.along * std::clamp(dot(r, edge.along), 0.0F, edge.length);
-        if (dot(v, v) <= most * most) near_.push_back(edge);
+        if (edges.size() > 3) {
+            const Vec2f r = middle - edge.a;
+            const Vec2f v = r - edge.along * std::clamp(dot(r, edge.along), 0.0F, edge.length);
+            if (dot(v, v) > most * most) continue;
+        }
+        near_.push_back({edge, numbers.begin, numbers.end});
     }
-    return near_;
 }
 
 TriangleRange FaceEdges::triangles_of(const Mesh& mesh, std::uint32_t triangle) {
@@ -135,13 +82,13 @@ TriangleRange FaceEdges::triangles_of(const Mesh& mesh, std::uint32_t triangle) 
 }
 
 /// `first`: number of the first triangle over all meshes.
-std::span<const ScreenEdge> FaceEdges::edges_of(std::uint32_t first, const Mesh& mesh,
+std::span<const ScreenEdge> FaceEdges::edges_of(std::uint32_t first, FaceMap::Triangle seen,
                                                 TriangleRange triangles) {
     if (2 * faces_ >= table_.size()) grow();
     Face& face = table_[place_of(first)];
     if (face.key == FaceMap::kNone) {
         const std::size_t begin = edges_.size();
-        add_edges(mesh, triangles);
+        add_edges(seen.object, triangles);
         face = {first, static_cast<std::uint32_t>(begin),
                 static_cast<std::uint32_t>(edges_.size() - begin)};
         ++faces_;
@@ -168,7 +115,9 @@ void FaceEdges::grow() {
 }
 
 /// The edges that bound the face, but not the open ones: those have lines of their own.
-void FaceEdges::add_edges(const Mesh& mesh, TriangleRange triangles) {
+void FaceEdges::add_edges(std::uint32_t object, TriangleRange triangles) {
+    const Mesh& mesh = *map_.mesh(object);
+    const std::vector<ScreenPoint>& points = vertices_.of(object);
     // Edges within the face are there twice, in both directions.
     const auto number = [](std::uint32_t from, std::uint32_t to) {
         return static_cast<std::uint64_t>(from) << 32U | to;
@@ -186,7 +135,9 @@ void FaceEdges::add_edges(const Mesh& mesh, TriangleRange triangles) {
         const Mesh::Triangle& corners = mesh.triangles[t];
         std::array<Corner, 3> projected;
         for (std::size_t k = 0; k < 3; ++k) {
-            projected[k] = project(to_double(mesh.vertices[corners[k]]));
+            const Vec3f position = mesh.vertices[corners[k]];
+            projected[k] = {position, points.empty() ? project(projection_, to_double(position))
+                                                     : points[corners[k]]};
         }
         for (std::size_t k = 0; k < 3; ++k) {
             const std::size_t next = (k + 1) % 3;
@@ -204,37 +155,26 @@ void FaceEdges::add_edges(const Mesh& mesh, TriangleRange triangles) {
     }
 }
 
-FaceEdges::Corner FaceEdges::project(const Vec3d& position) const {
-    const Projection& p = projection_;
-    const Vec3d v = position - p.start;
-    const double depth = dot(v, p.forward);
-    const double width = p.origin_step + depth * p.slope_step;
-    const double scale = 1.0 / width;
-    return {position,
-            {dot(v, p.right) * scale + static_cast<double>(p.centre.x),
-             dot(v, p.down) * scale + static_cast<double>(p.centre.y)},
-            depth,
-            width};
-}
-
 void FaceEdges::add_edge(Corner a, Corner b) {
-    const double least = kNearest * std::max(a.width, b.width);
-    if (least <= 0.0) return;  // behind the eye
-    if (a.width < least || b.width < least) {
-        const bool a_is_near = a.width < b.width;
+    const float least = kNearest * std::max(a.seen.width, b.seen.width);
+    if (least <= 0.0F) return;  // behind the eye
+    if (a.seen.width < least || b.seen.width < least) {
+        const bool a_is_near = a.seen.width < b.seen.width;
         Corner& near = a_is_near ? a : b;
         const Corner& far = a_is_near ? b : a;
-        const double way = (least - near.width) / (far.width - near.width);
-        near = project(near.position + (far.position - near.position) * way);
+        const double way = static_cast<double>(least - near.seen.width) /
+                           static_cast<double>(far.seen.width - near.seen.width);
+        const Vec3d from = to_double(near.position);
+        near.seen = project(projection_, from + (to_double(far.position) - from) * way);
     }
-    const Vec2d d = b.point - a.point;
-    const double length = ink::length(d);
-    const Vec2d along = length > 0.0 ? d * (1.0 / length) : Vec2d{1.0, 0.0};
-    const Vec2d off = (a.point + b.point) * 0.5 - to_double(projection_.centre);
-    const double step = projection_.slope_step;
-    const double t = 0.5 * (a.depth + b.depth) * std::sqrt(1.0 + step * step * dot(off, off));
-    edges_.push_back(
-        {to_float(a.point), to_float(along), static_cast<float>(length), static_cast<float>(t)});
+    const Vec2f d{b.seen.x - a.seen.x, b.seen.y - a.seen.y};
+    const float length = ink::length(d);
+    const Vec2f along = length > 0.0F ? d * (1.0F / length) : Vec2f{1.0F, 0.0F};
+    const Vec2f off = Vec2f{a.seen.x + b.seen.x, a.seen.y + b.seen.y} * 0.5F - projection_.centre;
+    const auto step = static_cast<float>(projection_.slope_step);
+    const float t =
+        0.5F * (a.seen.depth + b.seen.depth) * std::sqrt(1.0F + step * step * dot(off, off));
+    edges_.push_back({{a.seen.x, a.seen.y}, along, length, t});
 }
 
 }  // namespace ink

@@ -18,11 +18,12 @@ namespace ink {
 /// Draws the lines of one tile after another.
 class LineDrawer {
   public:
-    /// `faces` is what lines between faces are drawn from; null if there are none.
-    LineDrawer(const Edges& edges, const LineThinning& thinning, const FaceMap* faces)
+    /// `faces` and `vertices` are what lines between faces are drawn from; null if there are none.
+    LineDrawer(const Edges& edges, const LineThinning& thinning, const FaceMap* faces,
+               const ScreenVertices* vertices)
         : edges_(edges), thinning_(thinning), ink_(edges.ink) {
         if (faces == nullptr) return;
-        face_edges_.emplace(edges.pipeline.camera.projection(), *faces);
+        face_edges_.emplace(edges.pipeline.camera.projection(), *faces, *vertices);
         faces_ = faces;
     }
 

@@ -31,7 +31,7 @@ TileLines LineFinder::search(const Tile& tile) {
     if (faces_ != nullptr) map_faces(tile);
     find_lines();
     if (specular_) add_specular();
-    if (ridges_) add_ridges(tile);
+    if (ridges_) add_ridges();
     if (front_) put_pixels(tile);
     found_.strokes = strokes_;  // no larger than they are
     return std::move(found_);
@@ -367,11 +367,11 @@ void LineFinder::add_specular() {
 }
 
 /// The colours of a ridge's two sides are alike: smoothing has nothing to do there.
-void LineFinder::add_ridges(const Tile& tile) {
+void LineFinder::add_ridges() {
     const Timer timer(stats_.lines_ms);
     const Timer phase(stats_.ridges_ms);
     segments_.clear();
-    ridges_->search(tile, segments_);
+    ridges_->search({grid_, blocks_, hits_, normals_}, segments_);
     for (Segment& segment : segments_) edges_.apply_distance(segment);
     if (keeps_segments_) {
         found_.segments.insert(found_.segments.end(), segments_.begin(), segments_.end());

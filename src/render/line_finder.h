@@ -130,7 +130,7 @@ class LineFinder {
     void smooth();
     void count(const InkStroke& stroke);
     void add_specular();
-    void add_ridges(const Tile& tile);
+    void add_ridges();
     void sample(std::span<const Vec2f> points, std::span<Sample> out);
     struct LatticeHit {
         const HitPacket* hits;

@@ -16,7 +16,6 @@ RidgeSettings ridge_settings(const Settings& settings) {
 
 RidgeSearch::RidgeSearch(const Pipeline& pipeline, int per_pixel)
     : pipeline_(pipeline),
-      per_pixel_(per_pixel),
       radius_(std::clamp(
           static_cast<int>(std::lround(pipeline.settings.ridge_scale_px() * per_pixel)), 2, 64)),
       apron_((radius_ + kBlockSide - 1) / kBlockSide * kBlockSide),
@@ -27,24 +26,67 @@ RidgeSearch::RidgeSearch(const Pipeline& pipeline, int per_pixel)
         balls_.push_back(std::holds_alternative<Spheres>(objects[k].shape) &&
                          pipeline.ids.is_ball(k));
     }
+    has_balls_ = std::ranges::find(balls_, true) != balls_.end();
 }
 
-void RidgeSearch::search(const Tile& tile, std::vector<Segment>& segments) {
-    trace(tile);
+void RidgeSearch::search(const LatticeView& lattice, std::vector<Segment>& segments) {
+    lay_grid(lattice.grid);
+    copy(lattice);
+    trace_around(lattice.grid);
     find_ridges(grid_, apron_, pattern_, ridge_settings(pipeline_.settings), segments);
 }
 
-void RidgeSearch::trace(const Tile& tile) {
-    grid_.x0 = tile.x0 * per_pixel_ - apron_;
-    grid_.y0 = tile.y0 * per_pixel_ - apron_;
-    grid_.spacing = 1.0F / static_cast<float>(per_pixel_);
-    // One more column and row, because a cell hangs on its upper left point.
-    grid_.resize((tile.x1 - tile.x0) * per_pixel_ + 1 + 2 * apron_,
-                 (tile.y1 - tile.y0) * per_pixel_ + 1 + 2 * apron_);
+void RidgeSearch::lay_grid(const SampleGrid& lattice) {
+    grid_.x0 = lattice.x0 - apron_;
+    grid_.y0 = lattice.y0 - apron_;
+    grid_.spacing = lattice.spacing;
+    grid_.resize(lattice.width + 2 * apron_, lattice.height + 2 * apron_);
     std::ranges::fill(grid_.id, kBackground);
+}
+
+/// What the tile's lattice saw goes to the middle of the grid.
+void RidgeSearch::copy(const LatticeView& lattice) {
+    const SampleGrid& from = lattice.grid;
+    const auto copy_plane = [&](const auto& plane, auto& to) {
+        for (int j = 0; j < from.height; ++j) {
+            std::copy_n(plane.data() + from.index(0, j), from.width,
+                        to.data() + grid_.index(apron_, j + apron_));
+        }
+    };
+    copy_plane(from.id, grid_.id);
+    copy_plane(from.px, grid_.px);
+    copy_plane(from.py, grid_.py);
+    copy_plane(from.pz, grid_.pz);
+    copy_plane(from.nx, grid_.nx);
+    copy_plane(from.ny, grid_.ny);
+    copy_plane(from.nz, grid_.nz);
+    copy_plane(from.t, grid_.t);
+    const bool other_normals = pipeline_.shader.has_line_normals();
+    if (!has_balls_ && !other_normals) return;
+    for (std::size_t k = 0; k < lattice.blocks.size(); ++k) {
+        const Block& block = lattice.blocks[k];
+        for (int lane = 0; lane < kLanes; ++lane) {
+            const int i = lane % kBlockSide;
+            const int j = lane / kBlockSide;
+            const std::uint32_t object = lattice.hits[k].object[lane];
+            if (i >= block.columns || j >= block.rows || object == kNoObject) continue;
+            const std::size_t n = grid_.index(block.x - grid_.x0 + i, block.y - grid_.y0 + j);
+            if (balls_[object]) grid_.id[n] = kBackground;
+            grid_.nx[n] = lattice.normals[k].x[lane];
+            grid_.ny[n] = lattice.normals[k].y[lane];
+            grid_.nz[n] = lattice.normals[k].z[lane];
+        }
+    }
+}
+
+void RidgeSearch::trace_around(const SampleGrid& lattice) {
+    const auto is_known = [&](int i, int size) {
+        return i >= apron_ && i + kBlockSide <= apron_ + size;
+    };
     blocks_.clear();
     for (int j = 0; j < grid_.height; j += kBlockSide) {
         for (int i = 0; i < grid_.width; i += kBlockSide) {
+            if (is_known(i, lattice.width) && is_known(j, lattice.height)) continue;
             blocks_.push_back({grid_.x0 + i, grid_.y0 + j, std::min(kBlockSide, grid_.width - i),
                                std::min(kBlockSide, grid_.height - j)});
         }

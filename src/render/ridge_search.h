@@ -1,12 +1,12 @@
 #pragma once
 
 #include <cstddef>
+#include <span>
 #include <vector>
 
 #include "lines/ridges.h"
 #include "lines/segment.h"
 #include "render/pipeline.h"
-#include "render/tiles.h"
 #include "sampling/sampler.h"
 #include "sampling/samples.h"
 
@@ -15,27 +15,37 @@ namespace ink {
 /// Thresholds of the settings in radians a pixel.
 RidgeSettings ridge_settings(const Settings& settings);
 
-/// Finds the apparent ridges of one tile after another, on a lattice of its own: ridges need the
-/// normals of a wide neighbourhood, which the lattice of other lines does not have at a tile's rim.
+/// What a tile's lattice saw: its samples, and the hits and shading normals of its blocks.
+struct LatticeView {
+    const SampleGrid& grid;
+    std::span<const Block> blocks;
+    std::span<const HitPacket> hits;
+    std::span<const NormalPacket> normals;
+};
+
+/// Finds the apparent ridges of one tile after another. They need the normals of a wide
+/// neighbourhood, so what lies around the tile is traced beside what its lattice saw.
 class RidgeSearch {
   public:
     /// `per_pixel` lattice points along a pixel's side.
     RidgeSearch(const Pipeline& pipeline, int per_pixel);
 
-    void search(const Tile& tile, std::vector<Segment>& segments);
+    void search(const LatticeView& lattice, std::vector<Segment>& segments);
 
     std::size_t rays() const { return sampler_.rays(); }
 
   private:
-    void trace(const Tile& tile);
+    void lay_grid(const SampleGrid& lattice);
+    void copy(const LatticeView& lattice);
+    void trace_around(const SampleGrid& lattice);
     void keep(const Block& block, std::size_t k);
 
     const Pipeline& pipeline_;
-    int per_pixel_;
     int radius_;  ///< of a ridge's neighbourhood, lattice points
     int apron_;   ///< the same, up to whole blocks
     RidgePattern pattern_;
     std::vector<bool> balls_;  ///< objects without ridges: each ID is a ball
+    bool has_balls_;
     Sampler sampler_;
     SampleGrid grid_;
     std::vector<Block> blocks_;
