@@ -103,6 +103,7 @@ const std::set<std::string>& loadable() {
                                               "lammps_box-not-numbers.lammpstrj",
                                               "lammps_items-after-atoms.lammpstrj",
                                               "points_nan_negradius.ply",
+                                              "all_degenerate.obj",
                                               "fandisk_fin_dup_flipped.obj",
                                               "fandisk_zero_area.obj",
                                               "nonmanifold_edge.obj",

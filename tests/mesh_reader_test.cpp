@@ -367,10 +367,24 @@ TEST(ObjReader, NamesTheLineAndTheRemedy) {
               "a.obj:5: vertex with a coordinate beyond 1e15 ('0 1e999 0'); correct it");
     EXPECT_EQ(error("v 0 1\nf 1 2 3\n"),
               "a.obj:5: vertex with 2 numbers; expected x y z, x y z w or x y z r g b");
-    EXPECT_EQ(error("f 1 1 2\n"), "a.obj: no face has an area; check the export and its scale");
+    EXPECT_EQ(error("f 1 1 1\n"), "a.obj: no face has an area; check the export and its scale");
     EXPECT_EQ(error(""), "a.obj: holds points, no faces; export the surface with its faces");
     EXPECT_EQ(error_of("a.obj", "hello\n"),
               "a.obj: holds no vertices; is it a Wavefront OBJ file?");
+}
+
+TEST(ObjReader, DrawsTheEdgesOfFacesWhereNoneHasAnArea) {
+    const FileContents contents =
+        read_text_as("a.obj", "v 0 0 0\nv 1 0 0\nv 3 0 0\nv 9 9 9\nf 1 2 3\nf 3 2 1\nf 1 1 3\n");
+    const auto& wires = std::get<Glyphs>(contents.objects.at(0).shape);
+    EXPECT_EQ(wires.placements.size(), 3U);  // each once
+    EXPECT_EQ(contents.counts[0].second, 3U);
+    EXPECT_EQ(contents.counts[1].second, 3U);
+    const Bounds3d box = contents.objects[0].world_bounds();
+    EXPECT_NEAR(box.extent().x, 3.0, 1e-6);
+    EXPECT_NEAR(box.extent().y, 0.03, 1e-6);
+    ASSERT_EQ(contents.warnings.size(), 1U);
+    EXPECT_EQ(contents.warnings[0].substr(0, 24), "No face has an area, the");
 }
 
 // ---- PLY ---------------------------------------------------------------------------------------
@@ -583,9 +597,10 @@ TEST(RealMeshes, ARingWithACutIsTriangulatedWithinItsOutline) {
 TEST(RealMeshes, DamagedFilesAreRefusedByNameOrRead) {
     const auto folder = test::data_file("meshes/broken");
     REQUIRE_DATA(folder);
-    const std::set<std::string> valid{"spot_far_from_origin.obj",    "spot_tiny_scale.obj",
-                                      "stl_header_says_solid.stl",   "nonmanifold_edge.obj",
-                                      "fandisk_fin_dup_flipped.obj", "fandisk_zero_area.obj"};
+    const std::set<std::string> valid{"all_degenerate.obj",   "spot_far_from_origin.obj",
+                                      "spot_tiny_scale.obj",  "stl_header_says_solid.stl",
+                                      "nonmanifold_edge.obj", "fandisk_fin_dup_flipped.obj",
+                                      "fandisk_zero_area.obj"};
     for (const auto& entry : std::filesystem::directory_iterator(folder)) {
         const std::string name = entry.path().filename().string();
         const std::string extension = entry.path().extension().string();

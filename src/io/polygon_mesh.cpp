@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cmath>
+#include <set>
 #include <span>
 #include <utility>
 
@@ -14,6 +16,7 @@
 #include "base/parallel.h"
 #include "base/text.h"
 #include "io/triangulate.h"
+#include "io/wire_mesh.h"
 #include "scene/mesh_topology.h"
 
 namespace ink {
@@ -154,22 +157,14 @@ void check_file_normals(PolygonMesh& polygons) {
         "Some normals of the file are zero or not finite; all were computed anew.");
 }
 
-void warn_about_dropped(std::size_t too_small, std::size_t without_area, std::size_t all,
-                        PolygonMesh& polygons) {
-    if (too_small > 0) {
-        polygons.warnings.push_back(
-            fmt::format("{} faces with fewer than 3 corners were left out.", too_small));
-    }
-    if (without_area > 0) {
-        polygons.warnings.push_back(
-            fmt::format("{} of {} triangles have no area, their corners coincide or lie on a line, "
-                        "and were left out.",
-                        without_area, all));
-    }
+void warn_about_small(std::size_t too_small, PolygonMesh& polygons) {
+    if (too_small == 0) return;
+    polygons.warnings.push_back(
+        fmt::format("{} faces with fewer than 3 corners were left out.", too_small));
 }
 
-/// Triangles, without what cannot be seen, with the vertices that they share merged.
-Mesh clean_mesh(const std::filesystem::path& file, PolygonMesh& polygons) {
+/// The triangles of a file as they are.
+Mesh raw_mesh(const std::filesystem::path& file, PolygonMesh& polygons) {
     Triangulator triangulator(file, polygons);
     Mesh mesh = triangulator.run();
     // Welding needs the memory.
@@ -179,13 +174,37 @@ Mesh clean_mesh(const std::filesystem::path& file, PolygonMesh& polygons) {
     release(polygons.normals);
     mesh.vertices = std::move(polygons.positions);
     mesh.colors = std::move(polygons.colors);
+    warn_about_small(triangulator.too_small(), polygons);
+    return mesh;
+}
+
+/// Leaves out what cannot be seen, and merges the vertices that triangles share.
+void clean(Mesh& mesh, PolygonMesh& polygons) {
     const std::size_t all = mesh.triangles.size();
     const std::size_t without_area = weld(mesh);
-    warn_about_dropped(triangulator.too_small(), without_area, all, polygons);
-    if (mesh.triangles.empty()) {
-        throw InputError(file, "no face has an area; check the export and its scale");
+    if (without_area == 0) return;
+    polygons.warnings.push_back(
+        fmt::format("{} of {} triangles have no area, their corners coincide or lie on a line, "
+                    "and were left out.",
+                    without_area, all));
+}
+
+/// True at the first triangle of almost every mesh.
+bool any_has_area(const Mesh& mesh) {
+    return std::ranges::any_of(
+        mesh.triangles, [&](const Mesh::Triangle& triangle) { return has_area(mesh, triangle); });
+}
+
+/// Vertices of triangles, each place once.
+std::size_t used_vertices(const Mesh& mesh) {
+    std::set<std::array<float, 3>> places;
+    for (const Mesh::Triangle& triangle : mesh.triangles) {
+        for (const std::uint32_t vertex : triangle) {
+            const Vec3f p = mesh.vertices[vertex] + Vec3f{};  // -0 + 0 is 0
+            places.insert({p.x, p.y, p.z});
+        }
     }
-    return mesh;
+    return places.size();
 }
 
 /// A surface that can be made of matter has none of these; what was meant is anyone's guess.
@@ -214,6 +233,25 @@ void warn_if_far(const Object& object, PolygonMesh& polygons) {
         fmt::format("The coordinates lie far from the origin ({:.2g} times the size of the model), "
                     "where 32-bit numbers are too coarse for its shape; move the model nearer.",
                     distance / size));
+}
+
+/// Faces without area show their edges, which is all that there is of them.
+FileContents wire_contents(const std::filesystem::path& file, const Mesh& mesh, Object object,
+                           PolygonMesh& polygons) {
+    Glyphs wires = wires_of(mesh);
+    if (wires.placements.empty()) {
+        throw InputError(file, "no face has an area; check the export and its scale");
+    }
+    FileContents contents;
+    contents.format = std::move(polygons.format);
+    contents.counts = {{"vertices", used_vertices(mesh)}, {"triangles", mesh.triangles.size()}};
+    contents.warnings = std::move(polygons.warnings);
+    contents.warnings.emplace_back(
+        "No face has an area, their corners coincide or lie on a line: only their edges are drawn, "
+        "as wires.");
+    object.shape = std::move(wires);
+    contents.objects.push_back(std::move(object));
+    return contents;
 }
 
 FileContents describe(Object object, PolygonMesh polygons) {
@@ -253,19 +291,20 @@ FileContents mesh_contents(const std::filesystem::path& file, PolygonMesh polygo
                                    : "holds points, no faces; export the surface with its faces");
     }
     check_file_normals(polygons);
-    Mesh mesh = clean_mesh(file, polygons);
+    Object object;
+    object.name = model_name(file);
+    object.kind = ObjectKind::mesh;
+    object.frame.origin = polygons.origin;
+    if (polygons.color) object.material.color = *polygons.color;
+    Mesh mesh = raw_mesh(file, polygons);
+    if (!any_has_area(mesh)) return wire_contents(file, mesh, std::move(object), polygons);
+    clean(mesh, polygons);
     MeshTopology topology(mesh);
     stitch(mesh, topology);
     smooth_normals(mesh, topology);
     warn_about_branches(mesh, topology, polygons);
     mesh.twins = std::move(topology).take_twins();
-
-    Object object;
-    object.name = model_name(file);
-    object.kind = ObjectKind::mesh;
-    object.frame.origin = polygons.origin;
     object.shape = std::move(mesh);
-    if (polygons.color) object.material.color = *polygons.color;
     object.part_names = std::move(polygons.part_names);
     warn_if_far(object, polygons);
     return describe(std::move(object), std::move(polygons));

@@ -10,6 +10,7 @@
 
 #include "base/memory.h"
 #include "base/parallel.h"
+#include "scene/mesh_topology.h"
 
 namespace ink {
 
@@ -199,6 +200,10 @@ std::size_t drop_triangles_without_area(Mesh& mesh) {
 }
 
 }  // namespace
+
+bool has_area(const Mesh& mesh, const Mesh::Triangle& triangle) {
+    return area_vector(mesh, triangle) != Vec3d{};
+}
 
 std::size_t weld(Mesh& mesh) {
     mesh.edge_flags.clear();

@@ -51,6 +51,9 @@ class MeshTopology {
     std::vector<Corner> twins_;
 };
 
+/// Whether the corners of a triangle lie neither in one place nor on one line.
+bool has_area(const Mesh& mesh, const Mesh::Triangle& triangle);
+
 /// A triangle's unit normal (0 without an area) and the angles at its corners, radians.
 struct Facet {
     Vec3f normal;
