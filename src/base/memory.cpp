@@ -11,6 +11,8 @@
 #include <optional>
 #include <string>
 
+#include "base/parallel.h"
+
 namespace ink {
 
 namespace {
@@ -88,6 +90,12 @@ void use_large_pages([[maybe_unused]] const void* begin, [[maybe_unused]] std::s
     const std::uintptr_t last = (from + bytes) / kPage * kPage;
     // A wish: that it may not be granted does no harm.
     madvise(reinterpret_cast<void*>(first), last - first, MADV_HUGEPAGE);
+    // The system clears a page when it is first written to: now, and on all threads.
+    parallel_ranges((last - first) / kPage, 4, [&](std::size_t from_page, std::size_t to_page) {
+        for (std::size_t k = from_page; k < to_page; ++k) {
+            *reinterpret_cast<volatile char*>(first + k * kPage) = 0;
+        }
+    });
 #endif
 }
 

@@ -22,6 +22,12 @@ enum class Encoding { ascii, little_endian, big_endian };
 
 enum class Type { int8, uint8, int16, uint16, int32, uint32, float32, float64 };
 
+/// Bytes of a number.
+constexpr std::size_t size_of(Type type) {
+    constexpr std::array<std::size_t, 8> kSizes{1, 1, 2, 2, 4, 4, 4, 8};
+    return kSizes[static_cast<std::size_t>(type)];
+}
+
 struct Property {
     std::string name;
     Type type = Type::float32;
@@ -70,45 +76,63 @@ class BinaryValues {
     BinaryValues(std::string_view body, std::endian order)
         : rest_(body), swap_(is_foreign(order)) {}
 
+    /// The number that begins at `from`.
+    double at(const char* from, Type type) const {
+        const auto as = [&]<class T>(T) { return static_cast<double>(load<T>(from, swap_)); };
+        switch (type) {
+            case Type::int8: return as(std::int8_t{});
+            case Type::uint8: return as(std::uint8_t{});
+            case Type::int16: return as(std::int16_t{});
+            case Type::uint16: return as(std::uint16_t{});
+            case Type::int32: return as(std::int32_t{});
+            case Type::uint32: return as(std::uint32_t{});
+            case Type::float32: return as(float{});
+            case Type::float64: return as(double{});
+        }
+        return 0.0;
+    }
+
     /// False at the end of the data.
     bool read(Type type, double& value) {
-        switch (type) {
-            case Type::int8: return read_as<std::int8_t>(value);
-            case Type::uint8: return read_as<std::uint8_t>(value);
-            case Type::int16: return read_as<std::int16_t>(value);
-            case Type::uint16: return read_as<std::uint16_t>(value);
-            case Type::int32: return read_as<std::int32_t>(value);
-            case Type::uint32: return read_as<std::uint32_t>(value);
-            case Type::float32: return read_as<float>(value);
-            case Type::float64: return read_as<double>(value);
-        }
-        return false;
+        if (rest_.size() < size_of(type)) return false;
+        value = at(rest_.data(), type);
+        rest_.remove_prefix(size_of(type));
+        return true;
     }
 
     /// Takes a face of a byte and three 32-bit numbers, as almost all are, if one follows and its
     /// corners are below `limit`: in a third of the time.
     bool take_triangle(std::uint64_t limit, std::array<std::uint32_t, 3>& corners) {
         constexpr std::size_t kBytes = 1 + sizeof(corners);
-        if (swap_ || rest_.size() < kBytes || rest_.front() != 3) return false;
-        std::memcpy(corners.data(), rest_.data() + 1, sizeof(corners));
-        for (const std::uint32_t corner : corners) {
-            if (corner >= limit) return false;
+        if (rest_.size() < kBytes || rest_.front() != 3) return false;
+        for (std::size_t k = 0; k < 3; ++k) {
+            corners[k] = load<std::uint32_t>(rest_.data() + 1 + 4 * k, swap_);
+            if (corners[k] >= limit) return false;
         }
         rest_.remove_prefix(kBytes);
         return true;
     }
 
+    /// Takes `count` entries of `bytes` each, if there are so many: a view to read them from in any
+    /// order; else empty.
+    std::string_view take(std::uint64_t count, std::size_t bytes) {
+        if (bytes == 0 || rest_.size() / bytes < count) return {};
+        const std::string_view taken = rest_.substr(0, count * bytes);
+        rest_.remove_prefix(taken.size());
+        return taken;
+    }
+    /// The same kind of numbers, of other bytes.
+    BinaryValues over(std::string_view bytes) const {
+        BinaryValues values = *this;
+        values.rest_ = bytes;
+        return values;
+    }
+    /// Puts back what was taken last.
+    void put_back(std::string_view taken) { rest_ = {taken.data(), taken.size() + rest_.size()}; }
+
     std::optional<std::size_t> line() const { return std::nullopt; }
 
   private:
-    template <class T>
-    bool read_as(double& value) {
-        if (rest_.size() < sizeof(T)) return false;
-        value = static_cast<double>(load<T>(rest_.data(), swap_));
-        rest_.remove_prefix(sizeof(T));
-        return true;
-    }
-
     std::string_view rest_;
     bool swap_;
 };
@@ -120,7 +144,7 @@ class AsciiValues {
 
     /// False at the end of the data or where there is no number.
     bool read(Type /*type*/, double& value) {
-        while (at_ != end_ && (*at_ == ' ' || (*at_ >= '\t' && *at_ <= '\r'))) ++at_;
+        skip_blanks();
         if (at_ != end_ && *at_ == '+') ++at_;
         const auto result = std::from_chars(at_, end_, value);
         if (result.ec != std::errc{}) return false;
@@ -128,8 +152,16 @@ class AsciiValues {
         return true;
     }
 
-    static bool take_triangle(std::uint64_t /*limit*/, std::array<std::uint32_t, 3>& /*corners*/) {
-        return false;
+    /// As BinaryValues does, of whole numbers.
+    bool take_triangle(std::uint64_t limit, std::array<std::uint32_t, 3>& corners) {
+        const char* const start = at_;
+        std::uint32_t count = 0;
+        bool taken = take_whole(count) && count == 3;
+        for (std::uint32_t& corner : corners) {
+            taken = taken && take_whole(corner) && corner < limit;
+        }
+        if (!taken) at_ = start;
+        return taken;
     }
 
     std::optional<std::size_t> line() const {
@@ -137,6 +169,20 @@ class AsciiValues {
     }
 
   private:
+    static bool is_blank(char c) { return c == ' ' || (c >= '\t' && c <= '\r'); }
+    void skip_blanks() {
+        while (at_ != end_ && is_blank(*at_)) ++at_;
+    }
+    bool take_whole(std::uint32_t& value) {
+        skip_blanks();
+        const auto result = std::from_chars(at_, end_, value);
+        if (result.ec != std::errc{} || (result.ptr != end_ && !is_blank(*result.ptr))) {
+            return false;
+        }
+        at_ = result.ptr;
+        return true;
+    }
+
     std::string_view all_;
     const char* at_;
     const char* end_;

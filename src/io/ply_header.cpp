@@ -30,11 +30,6 @@ std::optional<Type> parse_type(std::string_view name) {
     return std::nullopt;
 }
 
-std::size_t size_of(Type type) {
-    static constexpr std::array<std::size_t, 8> kSizes{1, 1, 2, 2, 4, 4, 4, 8};
-    return kSizes[static_cast<std::size_t>(type)];
-}
-
 /// Reads the header line by line; what it returns is well formed, and its counts fit the file.
 class HeaderReader {
   public:

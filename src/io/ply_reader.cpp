@@ -5,17 +5,20 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <bit>
 #include <cmath>
 #include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
 #include "base/error.h"
 #include "base/memory.h"
+#include "base/parallel.h"
 #include "base/text.h"
 #include "io/file_text.h"
 #include "io/formats.h"
@@ -28,6 +31,8 @@ namespace {
 
 using namespace ply;
 using Path = std::filesystem::path;
+
+constexpr std::size_t kGrain = 1 << 14;
 
 /// Which number of a vertex a property holds.
 enum Slot : std::size_t { kX, kY, kZ, kNx, kNy, kNz, kRed, kGreen, kBlue, kOther, kSlots };
@@ -142,8 +147,55 @@ class BodyReader {
         const VertexLayout layout(*element_);
         mesh_.single_precision = layout.types[kX] == Type::float32;
         reserve_large(mesh_.positions, element_->count);
+        if constexpr (std::is_same_v<Values, BinaryValues>) {
+            if (take_vertices(layout)) return;
+        }
         for (index_ = 0; index_ < element_->count; ++index_)
             add_vertex(layout, read_vertex(layout));
+    }
+
+    /// All vertices at once, on all threads, where they are of one size. False where one by one
+    /// will tell what is wrong.
+    bool take_vertices(const VertexLayout& layout) {
+        const std::vector<Property>& properties = element_->properties;
+        std::size_t stride = 0;
+        for (const Property& property : properties) {
+            if (property.length_type) return false;
+            stride += size_of(property.type);
+        }
+        const std::string_view bytes = values_.take(element_->count, stride);
+        if (bytes.empty()) return false;
+        const auto vertex_at = [&](std::size_t i) {
+            std::array<double, kSlots> vertex{};
+            const char* from = bytes.data() + i * stride;
+            for (std::size_t k = 0; k < properties.size(); ++k) {
+                vertex[layout.slots[k]] = values_.at(from, properties[k].type);
+                from += size_of(properties[k].type);
+            }
+            return vertex;
+        };
+        const auto first = vertex_at(0);
+        mesh_.origin = {first[kX], first[kY], first[kZ]};
+        mesh_.positions.resize(element_->count);
+        if (layout.has_normals) mesh_.normals.resize(element_->count);
+        if (layout.has_colors) mesh_.colors.resize(element_->count);
+        std::atomic<bool> usable = true;
+        parallel_ranges(element_->count, kGrain, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i) {
+                const auto vertex = vertex_at(i);
+                const Vec3d position{vertex[kX], vertex[kY], vertex[kZ]};
+                if (!is_usable_position(position)) usable = false;
+                mesh_.positions[i] = to_float(position - mesh_.origin);
+                if (layout.has_normals) mesh_.normals[i] = normal_of(vertex);
+                if (layout.has_colors) mesh_.colors[i] = color_of(layout, vertex);
+            }
+        });
+        if (usable) return true;
+        mesh_.positions.clear();
+        mesh_.normals.clear();
+        mesh_.colors.clear();
+        values_.put_back(bytes);
+        return false;
     }
 
     std::array<double, kSlots> read_vertex(const VertexLayout& layout) {
@@ -161,14 +213,18 @@ class BodyReader {
 
     void add_vertex(const VertexLayout& layout, const std::array<double, kSlots>& vertex) {
         add_position(vertex);
-        if (layout.has_normals) {
-            mesh_.normals.push_back(to_float({vertex[kNx], vertex[kNy], vertex[kNz]}));
-        }
-        if (layout.has_colors) {
-            mesh_.colors.push_back({color_byte(vertex[kRed], layout.types[kRed]),
-                                    color_byte(vertex[kGreen], layout.types[kGreen]),
-                                    color_byte(vertex[kBlue], layout.types[kBlue])});
-        }
+        if (layout.has_normals) mesh_.normals.push_back(normal_of(vertex));
+        if (layout.has_colors) mesh_.colors.push_back(color_of(layout, vertex));
+    }
+
+    static Vec3f normal_of(const std::array<double, kSlots>& vertex) {
+        return to_float({vertex[kNx], vertex[kNy], vertex[kNz]});
+    }
+
+    static Rgb8 color_of(const VertexLayout& layout, const std::array<double, kSlots>& vertex) {
+        return {color_byte(vertex[kRed], layout.types[kRed]),
+                color_byte(vertex[kGreen], layout.types[kGreen]),
+                color_byte(vertex[kBlue], layout.types[kBlue])};
     }
 
     void add_position(const std::array<double, kSlots>& vertex) {
@@ -184,6 +240,9 @@ class BodyReader {
         reserve_large(mesh_.polygon_ends, faces.count);
         reserve_large(mesh_.corners, faces.count * 3);
         const bool plain = are_plain(faces);
+        if constexpr (std::is_same_v<Values, BinaryValues>) {
+            if (plain && take_triangles()) return;
+        }
         std::array<std::uint32_t, 3> triangle{};
         for (index_ = 0; index_ < faces.count; ++index_) {
             if (plain && values_.take_triangle(vertex_count_, triangle)) {
@@ -202,6 +261,33 @@ class BodyReader {
             }
             mesh_.end_polygon();
         }
+    }
+
+    /// All faces at once, on all threads, where each is a triangle of a byte and three 32-bit
+    /// numbers in range.
+    bool take_triangles() {
+        constexpr std::size_t kStride = 1 + 3 * sizeof(std::uint32_t);
+        const std::size_t count = element_->count;
+        const std::string_view bytes = values_.take(count, kStride);
+        if (bytes.empty()) return false;
+        mesh_.corners.resize(3 * count);
+        mesh_.polygon_ends.resize(count);
+        std::atomic<bool> plain = true;
+        parallel_ranges(count, kGrain, [&](std::size_t begin, std::size_t end) {
+            BinaryValues own = values_.over(bytes.substr(begin * kStride));
+            std::array<std::uint32_t, 3> corners{};
+            for (std::size_t i = begin; i < end && plain; ++i) {
+                if (!own.take_triangle(vertex_count_, corners)) plain = false;
+                std::ranges::copy(corners,
+                                  mesh_.corners.begin() + static_cast<std::ptrdiff_t>(3 * i));
+                mesh_.polygon_ends[i] = static_cast<std::uint32_t>(3 * (i + 1));
+            }
+        });
+        if (plain) return true;
+        mesh_.corners.clear();
+        mesh_.polygon_ends.clear();
+        values_.put_back(bytes);
+        return false;
     }
 
     static bool are_plain(const Element& faces) {
