@@ -138,21 +138,23 @@ TEST_F(CommandLine, AnimationKeepsRadiiAndColoursThatAreChosen) {
         for (const auto& [gap, value] : {std::pair{1, 5}, {2, 50}}) {
             text += fmt::format(
                 "ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n2\nITEM: BOX BOUNDS pp pp pp\n0 9\n0 9\n"
-                "0 9\nITEM: ATOMS id x y z heat\n1 0 0 0 0\n2 {} 0 0 {}\n",
-                gap, value);
+                "0 9\nITEM: ATOMS id x y z heat vx vy vz\n1 0 0 0 0 0 0 0\n2 {} 0 0 {} 0 {} 0\n",
+                gap, value, -value);
         }
         return text;
     }());
-    const auto draw = [&](const Arguments& more) {
-        Arguments arguments{"render", "run.lammpstrj", "--view", "front",  "--size",
-                            "48x48",  "--color-by",    "heat",   "--quiet"};
-        arguments.insert(arguments.end(), more.begin(), more.end());
-        expect_done(run(arguments));
-    };
-    draw({"--frame", "0:1", "-o", "a#.png"});
-    draw({"--frame", "0:1", "-o", "b#.png", "--radius", "0.5", "--color-range", "0:50"});
-    EXPECT_EQ(pixels(file("a0.png")), pixels(file("b0.png")));
-    EXPECT_EQ(pixels(file("a1.png")), pixels(file("b1.png")));
+    for (const char* field : {"heat", "v"}) {  // a column, and the length of three
+        const auto draw = [&](const Arguments& more) {
+            Arguments arguments{"render", "run.lammpstrj", "--view", "front",  "--size",
+                                "48x48",  "--color-by",    field,    "--quiet"};
+            arguments.insert(arguments.end(), more.begin(), more.end());
+            expect_done(run(arguments));
+        };
+        draw({"--frame", "0:1", "-o", "a#.png"});
+        draw({"--frame", "0:1", "-o", "b#.png", "--radius", "0.5", "--color-range", "0:50"});
+        EXPECT_EQ(pixels(file("a0.png")), pixels(file("b0.png")));
+        EXPECT_EQ(pixels(file("a1.png")), pixels(file("b1.png")));
+    }
 }
 
 TEST_F(CommandLine, LegendComesWithColoursOfNumbersUnlessItIsUnwanted) {

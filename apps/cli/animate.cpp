@@ -73,20 +73,17 @@ class Animation {
 
     /// Gives the field that colours show one range over all frames, where it is not set.
     void keep_colors(FrameRange range) {
-        const std::string field = settings_.get("color-by");
-        if (field.empty() || !settings_.get("color-range").empty()) return;
+        if (settings_.get("color-by").empty() || !settings_.get("color-range").empty()) return;
         std::optional<std::pair<double, double>> values;
         for (const std::string& input : arguments_.inputs) {
             for (int frame = range.first; frame <= range.last; ++frame) {
                 Settings settings = settings_;
                 settings.set("frame", std::to_string(frame));
-                const FileInfo info = inspect(input, settings);
-                const auto found = std::ranges::find(info.fields, field, &FieldInfo::name);
-                if (found == info.fields.end() || found->components != 1) return;
-                if (!(found->least <= found->most)) continue;
-                if (!values) values.emplace(found->least, found->most);
-                values->first = std::min(values->first, found->least);
-                values->second = std::max(values->second, found->most);
+                const auto own = inspect(input, settings).color_range;
+                if (!own || !(own->first <= own->second)) continue;
+                if (!values) values = own;
+                values->first = std::min(values->first, own->first);
+                values->second = std::max(values->second, own->second);
             }
         }
         if (!values || !(values->first < values->second)) return;

@@ -39,7 +39,10 @@ struct FileInfo {
     std::vector<FieldInfo> fields;          ///< what atoms or particles carry
     std::uint64_t memory_bytes = 0;         ///< that drawing it takes, beside the picture
     std::optional<double> chosen_radius{};  ///< of particles whose file gives none
-    std::vector<std::string> warnings;      ///< what was left out or guessed
+    /// Of the field that gives the colours, or its length where it has components: the values at
+    /// the ends of the colour map.
+    std::optional<std::pair<double, double>> color_range{};
+    std::vector<std::string> warnings;  ///< what was left out or guessed
 };
 
 /// What a scene will take. Estimates, from measurements.

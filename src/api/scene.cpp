@@ -27,6 +27,12 @@ std::string kind_name(ink::ObjectKind kind) {
     return {};
 }
 
+std::optional<std::pair<double, double>> color_range(const ink::Object& object) {
+    const auto& scale = object.color_scale;
+    if (!scale || scale->map == nullptr) return std::nullopt;
+    return std::pair{scale->least, scale->most};
+}
+
 std::array<double, 3> to_array(ink::Vec3d v) { return {v.x, v.y, v.z}; }
 
 void check(bool good, std::string_view name, std::size_t index, std::string_view problem) {
@@ -122,6 +128,7 @@ FileInfo describe(const std::filesystem::path& file, const ink::FileContents& co
                   .fields = {},
                   .memory_bytes = ink::cost_of(contents.objects).bytes(),
                   .chosen_radius = contents.objects.front().chosen_radius,
+                  .color_range = color_range(contents.objects.front()),
                   .warnings = contents.warnings};
     for (const ink::FieldSummary& field : contents.fields) {
         info.fields.push_back({field.name, field.components, field.least, field.most});
