@@ -445,6 +445,24 @@ TEST(AutomaticView, ShowsTheBroadSideOfAMolecule) {
     EXPECT_NEAR(std::abs(camera.right().y), 1.0F, 1e-5F);
 }
 
+TEST(AutomaticView, LooksAlongNoRowOfABlockOfParticlesButStraightAtASheet) {
+    const auto back_of = [](int layers) {
+        std::vector<Sphere> grid;
+        for (int i = 0; i < 32 * 32 * layers; ++i) {
+            const auto x = static_cast<float>(i % 32);
+            const auto y = static_cast<float>(i / 32 % 32);
+            grid.push_back({{x, y, static_cast<float>(i / 1024)}, 0.5F});
+        }
+        const Scene scene({sphere_object(std::move(grid))});
+        Settings settings;
+        settings.view.view = View::automatic;
+        return Camera(scene, settings.view, settings.size).back();
+    };
+    const Vec3f block = back_of(32);
+    for (const float along : {block.x, block.y, block.z}) EXPECT_LT(std::abs(along), 0.85F);
+    EXPECT_NEAR(std::abs(back_of(1).z), 1.0F, 1e-5F);
+}
+
 TEST(Camera, RefusesAnEyeAtItsOwnTarget) {
     const Scene scene({sphere_object({{{0, 0, 0}, 1}})});
     ViewSettings view;

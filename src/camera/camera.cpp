@@ -37,8 +37,17 @@ Axes automatic_axes(const Scene& scene) {
         return object.kind == ObjectKind::mesh || object.kind == ObjectKind::shape;
     });
     // 30 degrees to the side, 20 above: three faces of a box show, each with an area of its own.
-    if (has_mesh) return {{0.46985, 0.34202, 0.81380}, {0, 1, 0}};
+    constexpr Axes kOblique{{0.46985, 0.34202, 0.81380}, {0, 1, 0}};
+    if (has_mesh) return kOblique;
     const PrincipalAxes axes = principal_axes(scene);
+    // Many particles that fill a block often lie in rows along its edges, and one who looks along
+    // the rows sees nothing but their pattern.
+    constexpr std::size_t kMany = 1000;
+    const bool is_block = axes.bulky && scene.primitive_count() >= kMany &&
+                          std::ranges::all_of(scene.objects(), [](const Object& object) {
+                              return object.kind == ObjectKind::particles;
+                          });
+    if (is_block) return kOblique;
     return {axes.shortest, axes.middle};
 }
 

@@ -137,7 +137,8 @@ PrincipalAxes principal_axes(const Scene& scene) {
     const double middle = m[order[1]][order[1]];
     const double shortest = m[order[2]][order[2]];
     const bool clear = middle < 0.95 * longest && shortest < 0.95 * middle;
-    if (!clear) return {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    constexpr double kFlat = 0.01;  // of the variance: a tenth as thick as long
+    if (!clear) return {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, shortest > kFlat * longest};
 
     const auto column = [&](std::size_t k) {
         return Vec3d{vectors[0][k], vectors[1][k], vectors[2][k]};

@@ -9,6 +9,8 @@ namespace ink {
 /// shortest), each turned to its file axis rather than away from it.
 struct PrincipalAxes {
     Vec3d longest, middle, shortest;
+    /// Neither flat nor of a clear broad side: the axes are those of the file.
+    bool bulky = false;
 };
 
 /// Principal axes of the sphere centres of a scene: eigenvectors of their covariance. A scene
