@@ -1,5 +1,5 @@
 #!/bin/sh
-# Draws every look on seven data sets, as in docs/looks.md. Needs ImageMagick (convert, montage).
+# Draws every look on seven data sets, for docs/images. Needs ImageMagick (convert, montage).
 # looks.sh DATA OUT [PROGRAM]: DATA has the folders molecules, meshes and particles.
 set -eu
 data=$1
@@ -18,15 +18,21 @@ draw() { # NAME FILE FLAGS...: in every look
     done
 }
 
-draw 1-molecule "$samples/acetaminophen.xyz" --line-width 5px
+draw 1-molecule "$samples/acetaminophen.xyz"
 draw 2-protein "$data/molecules/4hhb.pdb" --color-by chain --select 'not water'
 draw 3-ribosome "$data/molecules/1ffk_ribosome50S.cif.gz" --color-by chain --line-width 1.5px
-draw 4-fandisk "$data/meshes/fandisk.obj" --material color=#c9b48a
+draw 4-fandisk "$data/meshes/fandisk_ascii.ply" --material color=#c9b48a \
+    --eye 2.95,1.95,-1.8 --look-at 0,-0.22,0 --up 0,1,0
 draw 5-engine "$data/meshes/2CylinderEngine.glb"
 draw 6-bar "$data/particles/mpm_karamelo_taylorbar3d_step1200.lammpstrj.gz" --color-by seq \
     --colormap coolwarm --view iso --line-width 1.5px
 draw 7-grains "$data/particles/dem_pile10192.vtu" --color-by radius --colormap coolwarm \
     --eye 5.38,3.0,1.25 --look-at 5.38,5.38,0.06 --up 0,0,1 --line-width 1.5px
 
-montage "$out"/[1-7]-*.png -resize 360x270 -tile 7x7 -geometry 180x135+2+2 "$out/looks.png"
-convert "$out/looks.png" +dither -colors 220 "PNG8:$out/looks.png"
+montage "$out"/[1-7]-*.png -resize 512x384 -tile 7x7 -geometry 256x192+2+2 "$out/looks.png"
+convert "$out/looks.png" -dither FloydSteinberg -colors 255 "PNG8:$out/looks.png"
+
+for look in plain soft toon goodsell technical ink blueprint; do
+    convert "$out/2-protein-$look.png" "$out/5-engine-$look.png" "$out/4-fandisk-$look.png" \
+        -resize 320x240 +append -dither FloydSteinberg -colors 255 "PNG8:$out/look-$look.png"
+done

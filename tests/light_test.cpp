@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -241,6 +242,77 @@ TEST(Lines, KeepPlaceWidthAndTypeInAnyLight) {
             EXPECT_EQ(values(plain, channel), values(other, channel)) << name << " " << channel;
         }
     }
+}
+
+TEST(Lines, KeepPlaceWidthAndTypeInEveryLook) {
+    const Scene scene(heap());
+    Settings settings = plan_view(4, 128);
+    settings.lines = LineTypes::all();
+    settings.aovs = {Aov::lines};
+    const Film usual = draw(scene, settings, {.display = true, .linear = true});
+    for (const Look& look : looks()) {
+        // Light, colours and paper of the look, with the usual lines.
+        Settings lit = with(settings, "look", look.name);
+        lit.look_rules.clear();
+        for (const std::string_view name :
+             {"line-width", "line-density", "line-fade", "line-taper", "halo", "compose"}) {
+            lit = with(lit, name, find_setting(name).get(settings));
+        }
+        const Film other = draw(scene, lit, {.display = true, .linear = true});
+        for (const char* channel : {"line.A", "line.type", "line.distance"}) {
+            EXPECT_EQ(values(usual, channel), values(other, channel)) << look.name << channel;
+        }
+    }
+}
+
+/// Widths are a look's own, places are not: a line's middle is where it is in any other look.
+TEST(Lines, RunInTheSamePlacesInEveryLook) {
+    const Scene scene({sphere_object({{{0, 0, 0}, 1}})});
+    Settings settings = plan_view(4, 128);
+    settings.aovs = {Aov::lines};
+    for (const Look& look : looks()) {
+        const Settings own = with(settings, "look", look.name);
+        const Film film = draw(scene, own, {.display = true, .linear = true});
+        const auto& alpha = plane(film, "line.A");
+        double ink = 0.0;
+        double moment = 0.0;
+        for (int x = 64; x < 128; ++x) {
+            const auto a = static_cast<double>(alpha[static_cast<std::size_t>(64 * 128 + x)]);
+            ink += a;
+            moment += a * (x + 0.5);
+        }
+        ASSERT_GT(ink, 0.2) << look.name;
+        // 32 pixels a unit. Half a pixel above the middle the outline is 0.004 pixels nearer.
+        EXPECT_NEAR(moment / ink, 64.0 + 32.0, 0.05) << look.name;
+    }
+}
+
+TEST(Toon, HasFourTonesWithSmoothBorders) {
+    const Scene scene({sphere_object({{{0, 0, 0}, 1}})});
+    Settings settings = with(with(plan_view(3, 192), "lines", "none"), "shade", "toon");
+    const Film film = draw(scene, settings);
+    std::map<int, int> levels;
+    for (int y = 0; y < 192; ++y) {
+        for (int x = 0; x < 192; ++x) {
+            const double dx = x + 0.5 - 96.0;
+            const double dy = y + 0.5 - 96.0;
+            if (dx * dx + dy * dy < 60.0 * 60.0) ++levels[pixel(film, x, y).g];
+        }
+    }
+    int frequent = 0;
+    int rest = 0;
+    for (const auto& [level, count] : levels) {
+        if (count > 200) {
+            ++frequent;
+        } else {
+            rest += count;
+        }
+    }
+    EXPECT_GE(frequent, 3);
+    EXPECT_LE(frequent, 4);
+    // Borders of a few hundred pixels' length, one or two pixels wide.
+    EXPECT_GT(rest, 150);
+    EXPECT_LT(rest, 900);
 }
 
 /// Ink of the picture's lines within columns [x0, x1).

@@ -1,6 +1,7 @@
 #include "shading/lighting.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "base/multiversion.h"
@@ -181,19 +182,70 @@ void mix(ColorLanes& colors, float share, Color other) {
     }
 }
 
-void posterize(float steps, ColorLanes& scattered) {
+namespace {
+
+/// How much brightness changes from a lane to the one beside or below it in a 4 x 4 block, over a
+/// pixel; 0 if the two see different surfaces or are not neighbours.
+float change(const SurfacePacket& surface, const Lanes<float>& bright, int i, int other) {
+    constexpr float kFarthest = 1.5F;     // pixels
+    constexpr float kSameSurface = 0.5F;  // cosine between normals
+    const HitPacket& hits = surface.hits;
+    const float x = surface.points.x[i] - surface.points.x[other];
+    const float y = surface.points.y[i] - surface.points.y[other];
+    const float distance = std::sqrt(x * x + y * y);
+    const Vec3f n{surface.normals.x[other], surface.normals.y[other], surface.normals.z[other]};
+    if (hits.object[i] != hits.object[other] || distance <= 0.0F || distance > kFarthest ||
+        along(surface.normals, i, n) < kSameSurface) {
+        return 0.0F;
+    }
+    return (bright[i] - bright[other]) / distance;
+}
+
+/// The tone that a brightness is drawn in, `blur` apart from which it is that tone alone.
+float tone(float bright, float blur) {
+    constexpr std::array kTones{0.10F, 0.34F, 0.64F, 0.92F};
+    constexpr std::array kBorders{0.17F, 0.42F, 0.68F};
+    float found = kTones[0];
+    for (std::size_t k = 0; k < kBorders.size(); ++k) {
+        const float past = (bright - kBorders[k]) / blur + 0.5F;
+        found += (kTones[k + 1] - kTones[k]) * std::min(std::max(past, 0.0F), 1.0F);
+    }
+    return found;
+}
+
+}  // namespace
+
+void posterize(const SurfacePacket& surface, ColorLanes& scattered) {
+    constexpr float kSharpest = 1e-4F;
+    constexpr float kSoftest = 0.1F;
+    Lanes<float> bright;
     for (int i = 0; i < kLanes; ++i) {
-        const float brightest = std::max({scattered.r[i], scattered.g[i], scattered.b[i]});
-        const float step = (std::floor(brightest * steps) + 0.5F) / steps;
-        if (brightest <= 0.0F) continue;
-        if (scattered.r[i] == brightest && scattered.g[i] == brightest &&
-            scattered.b[i] == brightest) {
+        bright[i] = std::max({scattered.r[i], scattered.g[i], scattered.b[i]});
+    }
+    for (int i = 0; i < kLanes; ++i) {
+        if (bright[i] <= 0.0F) continue;
+        const float across = change(surface, bright, i, i ^ 1);
+        const float down = change(surface, bright, i, i ^ 4);
+        const float blur =
+            std::min(std::max(std::sqrt(across * across + down * down), kSharpest), kSoftest);
+        const float step = tone(bright[i], blur);
+        if (scattered.r[i] == bright[i] && scattered.g[i] == bright[i] &&
+            scattered.b[i] == bright[i]) {
             scattered.r[i] = scattered.g[i] = scattered.b[i] = step;
             continue;
         }
-        scattered.r[i] *= step / brightest;
-        scattered.g[i] *= step / brightest;
-        scattered.b[i] *= step / brightest;
+        scattered.r[i] *= step / bright[i];
+        scattered.g[i] *= step / bright[i];
+        scattered.b[i] *= step / bright[i];
+    }
+}
+
+INKTRACE_MULTIVERSION
+void darken(const Lanes<float>& shares, ColorLanes& scattered) {
+    for (int i = 0; i < kLanes; ++i) {
+        scattered.r[i] *= shares[i];
+        scattered.g[i] *= shares[i];
+        scattered.b[i] *= shares[i];
     }
 }
 

@@ -78,7 +78,11 @@ void add_reflected(const ColorLanes& base, const ColorLanes& scattered, const Gl
 /// Moves colours towards `other` by a share of the way.
 void mix(ColorLanes& colors, float share, Color other);
 
-/// Whole steps in place of smooth shading, `steps` up to full light, in the light's own hue.
-void posterize(float steps, ColorLanes& scattered);
+/// Four tones in place of smooth shading, in the light's own hue. Where lanes of a 2 x 2 block of
+/// points are a pixel apart or less, one tone passes into the next over a pixel.
+void posterize(const SurfacePacket& surface, ColorLanes& scattered);
+
+/// Takes away from light all but these shares.
+void darken(const Lanes<float>& shares, ColorLanes& scattered);
 
 }  // namespace ink

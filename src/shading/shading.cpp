@@ -37,11 +37,12 @@ std::uint32_t shared_object(const HitPacket& hits) {
     return least == kNoObject || least == most ? least : kSeveralObjects;
 }
 
-constexpr float kToonSteps = 4.0F;
-
 /// Ambient occlusion also dims the other lights, by this share: rays that graze the scene on their
 /// way to a cleft mostly do not arrive.
 constexpr float kCleftShade = 0.5F;
+
+/// By this share it dims tones.
+constexpr float kToonClefts = 0.75F;
 
 }  // namespace
 
@@ -241,6 +242,12 @@ void Shader::illuminate(const SurfacePacket& surface, const ColorLanes& base,
     if (mode_ == ShadeMode::gooch) {
         return shade_gooch(lights_.sources.front(), surface, base, open, lit);
     }
+    // Tones follow the light alone; clefts are laid over them, without steps.
+    Lanes<float> clefts = Lanes<float>::filled(1.0F);
+    if (mode_ == ShadeMode::toon && ambient_ != nullptr) {
+        for (int i = 0; i < kLanes; ++i) clefts[i] = 1.0F - kToonClefts * (1.0F - open[i]);
+        open.fill(1.0F);
+    }
     Gloss gloss;
     if (any_gloss_) look_up_gloss(surface.hits, gloss);
 
@@ -258,7 +265,10 @@ void Shader::illuminate(const SurfacePacket& surface, const ColorLanes& base,
         add_diffuse(light, surface, visible, scattered);
         if (any_gloss_) add_highlight(light, surface, gloss, base, visible, reflected);
     }
-    if (mode_ == ShadeMode::toon) posterize(kToonSteps, scattered);
+    if (mode_ == ShadeMode::toon) {
+        posterize(surface, scattered);
+        darken(clefts, scattered);
+    }
     if (any_gloss_) {
         return add_reflected(base, scattered, gloss, reflected, lit);
     }
