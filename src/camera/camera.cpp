@@ -42,8 +42,11 @@ Axes automatic_axes(const Scene& scene) {
     const PrincipalAxes axes = principal_axes(scene);
     // Many particles that fill a block often lie in rows along its edges, and one who looks along
     // the rows sees nothing but their pattern.
+    // From a million on rows are finer than pixels, and a corner takes ten times as long to trace.
     constexpr std::size_t kMany = 1000;
-    const bool is_block = axes.bulky && scene.primitive_count() >= kMany &&
+    constexpr std::size_t kDust = 1'000'000;
+    const std::size_t count = scene.primitive_count();
+    const bool is_block = axes.bulky && count >= kMany && count < kDust &&
                           std::ranges::all_of(scene.objects(), [](const Object& object) {
                               return object.kind == ObjectKind::particles;
                           });
