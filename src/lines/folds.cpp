@@ -221,7 +221,8 @@ class FoldMender {
                 low = {std::min(low.x, p.x), std::min(low.y, p.y)};
                 high = {std::max(high.x, p.x), std::max(high.y, p.y)};
             }
-            const float reach = 4.0F * spacing_;
+            // To enter a part of the screen takes as long as many rays: seldom does a way leave it.
+            const float reach = 16.0F * spacing_;
             enter(worker, low - Vec2f{reach, reach}, high + Vec2f{reach, reach});
             visit(group, worker);
         });
