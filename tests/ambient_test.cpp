@@ -1,6 +1,7 @@
 // Ambient occlusion: how far surfaces lie open to the sky, against closed forms and rays.
 
 #include "shading/ambient.h"
+#include "base/error.h"
 
 #include <gtest/gtest.h>
 
@@ -182,6 +183,17 @@ TEST(AmbientOcclusion, OfAMeshIsNearThatByRays) {
         sum += difference * difference;
     }
     EXPECT_LT(std::sqrt(sum / static_cast<double>(seen.size())), 0.02);
+}
+
+TEST(AmbientOcclusion, IsGivenUpWhenToldTo) {
+    const std::filesystem::path file = source_dir() / "samples" / "acetaminophen.xyz";
+    const Scene scene(read_file(file).objects);
+    const auto tracer = make_tracer(scene);
+    AmbientCache cache;
+    std::atomic<bool> cancel = true;
+    EXPECT_THROW(cache.get(scene, *tracer, 3, &cancel), Cancelled);
+    cancel = false;
+    EXPECT_NE(cache.get(scene, *tracer, 3, &cancel), nullptr);
 }
 
 TEST(AmbientOcclusion, IsTheSameWhateverTheThreadsTilesAndWhatWasSeenBefore) {

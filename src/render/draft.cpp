@@ -117,7 +117,7 @@ Film render_draft(const Scene& scene, const Tracer& tracer, const Settings& sett
     const LineOutput kept{.ink = wanted.draws_lines(), .drawing = nullptr, .segments = true};
     RenderStats result;
     with_threads(wanted.threads, [&] {
-        small.emplace(scene, tracer, few, small_film, kept, true, control.ambient);
+        small.emplace(scene, tracer, few, small_film, kept, true, control.ambient, control.cancel);
         if (small->locates()) large.emplace(scene, tracer, wanted, film, inked, false);
     });
     if (large) {

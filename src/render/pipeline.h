@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <chrono>
 #include <cstddef>
 #include <functional>
@@ -30,10 +31,11 @@ struct LineOutput {
 /// What every method works with.
 struct Pipeline {
     /// `traces`: whether rays are wanted, or only what is found already is to be drawn. `kept`:
-    /// where ambient occlusion is kept from picture to picture; null if it is not.
+    /// where ambient occlusion is kept from picture to picture; null if it is not. Throws Cancelled
+    /// once `cancel` is true (null: never).
     Pipeline(const Scene& all_objects, const Tracer& scene_tracer, const Settings& all,
              Film& target, const LineOutput& line_output, bool traces = true,
-             AmbientCache* kept = nullptr)
+             AmbientCache* kept = nullptr, const std::atomic<bool>* cancel = nullptr)
         : scene(all_objects),
           tracer(scene_tracer),
           settings(all),
@@ -49,7 +51,8 @@ struct Pipeline {
         if (traces && *shading.ambient > 0.0F && all.compose != Compose::lines &&
             shading.mode != ShadeMode::none) {
             AmbientCache own;
-            bake = (kept != nullptr ? *kept : own).get(scene, tracer, shading.ambient_quality);
+            bake =
+                (kept != nullptr ? *kept : own).get(scene, tracer, shading.ambient_quality, cancel);
             ambient = bake->seen_by(camera);
             shader.use(ambient.get());
         }

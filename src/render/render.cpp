@@ -56,7 +56,7 @@ Film render(const Scene& scene, const Tracer& tracer, const Settings& settings,
         pipeline.emplace(
             scene, tracer, settings, film,
             LineOutput{.ink = formats.lines && settings.draws_lines(), .drawing = drawing}, true,
-            control.ambient);
+            control.ambient, control.cancel);
     });
     RenderStats result = pipeline->locates() ? render_edges(*pipeline, control)
                                              : render_stencils(*pipeline, control);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <memory>
 #include <mutex>
 
@@ -28,8 +29,9 @@ class AmbientOcclusion {
 class AmbientBake {
   public:
     /// `quality` in [1, kMostAmbientQuality]: each step looks into twice as many directions. Scene
-    /// and tracer must outlive it.
-    AmbientBake(const Scene& scene, const Tracer& tracer, int quality);
+    /// and tracer must outlive it. Throws Cancelled once `cancel` is true (null: never).
+    AmbientBake(const Scene& scene, const Tracer& tracer, int quality,
+                const std::atomic<bool>* cancel = nullptr);
     ~AmbientBake();
 
     /// As seen by a camera, which decides how fine the grids are. Must not outlive bake or camera.
@@ -45,7 +47,8 @@ class AmbientBake {
 /// change. Safe to use from many threads.
 class AmbientCache {
   public:
-    std::shared_ptr<const AmbientBake> get(const Scene& scene, const Tracer& tracer, int quality);
+    std::shared_ptr<const AmbientBake> get(const Scene& scene, const Tracer& tracer, int quality,
+                                           const std::atomic<bool>* cancel = nullptr);
 
   private:
     std::mutex mutex_;

@@ -121,7 +121,7 @@ std::uint64_t next_number() {
 }  // namespace
 
 struct AmbientBake::Impl {
-    Impl(const Scene& all, const Tracer& scene_tracer, int quality)
+    Impl(const Scene& all, const Tracer& scene_tracer, int quality, const std::atomic<bool>* cancel)
         : scene(all), directions(6 << (quality - 1)), rays(scene_tracer, 16 << quality) {
         std::size_t ball_count = 0;
         std::size_t triangles = 0;
@@ -141,7 +141,7 @@ struct AmbientBake::Impl {
                 corners += mesh->vertices.size();
             }
         }
-        if (balls_only) ball_sky.emplace(scene, directions);
+        if (balls_only) ball_sky.emplace(scene, directions, cancel);
         balls = LazyTable<BallBake>(ball_count);
         triangle_maps = LazyTable<NodeMaps<2 * kTriangleGrids>>(triangles);
         vertices = std::make_unique<std::atomic<std::uint64_t>[]>(corners);
@@ -359,8 +359,9 @@ class SeenBake final : public AmbientOcclusion {
 
 }  // namespace
 
-AmbientBake::AmbientBake(const Scene& scene, const Tracer& tracer, int quality)
-    : impl_(std::make_unique<Impl>(scene, tracer, quality)) {}
+AmbientBake::AmbientBake(const Scene& scene, const Tracer& tracer, int quality,
+                         const std::atomic<bool>* cancel)
+    : impl_(std::make_unique<Impl>(scene, tracer, quality, cancel)) {}
 AmbientBake::~AmbientBake() = default;
 
 std::unique_ptr<AmbientOcclusion> AmbientBake::seen_by(const Camera& camera) const {
@@ -368,10 +369,10 @@ std::unique_ptr<AmbientOcclusion> AmbientBake::seen_by(const Camera& camera) con
 }
 
 std::shared_ptr<const AmbientBake> AmbientCache::get(const Scene& scene, const Tracer& tracer,
-                                                     int quality) {
+                                                     int quality, const std::atomic<bool>* cancel) {
     const std::scoped_lock lock(mutex_);
     if (!bake_ || quality_ != quality) {
-        bake_ = std::make_shared<AmbientBake>(scene, tracer, quality);
+        bake_ = std::make_shared<AmbientBake>(scene, tracer, quality, cancel);
         quality_ = quality;
     }
     return bake_;

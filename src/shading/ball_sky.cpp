@@ -58,8 +58,10 @@ std::vector<Sphere> all_balls(const Scene& scene) {
 
 }  // namespace
 
-BallSky::BallSky(const Scene& scene, const SkyDirections& directions)
-    : directions_(directions), far_(all_balls(scene), length(scene.bounds().upper), directions) {
+BallSky::BallSky(const Scene& scene, const SkyDirections& directions,
+                 const std::atomic<bool>* cancel)
+    : directions_(directions),
+      far_(all_balls(scene), length(scene.bounds().upper), directions, cancel) {
     double sum = 0.0;
     std::size_t count = 0;
     const Clusters clusters(scene);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <vector>
 
@@ -29,7 +30,9 @@ struct Surroundings {
 /// which each ball has the part that it sees through.
 class BallSky {
   public:
-    BallSky(const Scene& scene, const SkyDirections& directions);
+    /// Throws Cancelled once `cancel` is true (null: never).
+    BallSky(const Scene& scene, const SkyDirections& directions,
+            const std::atomic<bool>* cancel = nullptr);
 
     /// What there is about a ball.
     void survey(const Sphere& ball, Surroundings& surroundings) const;

@@ -5,6 +5,7 @@
 #include <atomic>
 #include <cmath>
 
+#include "base/error.h"
 #include "base/parallel.h"
 #include "shading/far_sky_kernels.h"
 
@@ -122,7 +123,8 @@ float mean_radius(std::span<const Sphere> balls) {
 
 }  // namespace
 
-FarSky::FarSky(std::span<const Sphere> balls, float radius, const SkyDirections& directions)
+FarSky::FarSky(std::span<const Sphere> balls, float radius, const SkyDirections& directions,
+               const std::atomic<bool>* cancel)
     : steps(253.0F / (2.0F * radius)), lowest(-radius), frames(directions.groups.size()) {
     const float finest = 2.0F * radius / std::max(mean_radius(balls) * kTexel, 1e-6F * radius);
     const float needed = std::min(finest, kMostTexels - 4.0F);
@@ -167,6 +169,7 @@ FarSky::FarSky(std::span<const Sphere> balls, float radius, const SkyDirections&
     const auto for_pairs = [&](bool scouts, const auto& body) {
         parallel_ranges(pairs.size(), 1, [&](std::size_t begin, std::size_t end) {
             for (std::size_t n = begin; n < end; ++n) {
+                if (cancel != nullptr && cancel->load(std::memory_order_relaxed)) throw Cancelled();
                 if ((n % step == 0) == scouts) body(n);
             }
         });

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -28,8 +29,9 @@ struct FarSky {
     };
 
     /// `radius`: of a ball about the origin that holds all the others. Uses all threads that
-    /// parallel_ranges does.
-    FarSky(std::span<const Sphere> balls, float radius, const SkyDirections& directions);
+    /// parallel_ranges does. Throws Cancelled once `cancel` is true (null: never).
+    FarSky(std::span<const Sphere> balls, float radius, const SkyDirections& directions,
+           const std::atomic<bool>* cancel = nullptr);
 
     /// Where the maps of a group's directions lie: texel = middle + texels * (p . right, p . up).
     struct Frame {
