@@ -10,6 +10,7 @@
 #include <array>
 #include <cstdint>
 #include <cstring>
+#include <system_error>
 #include <utility>
 
 namespace inktrace::viewer {
@@ -37,14 +38,36 @@ void FileWatcher::watch(const std::vector<std::filesystem::path>& files) {
     for (const int folder : folders_) inotify_rm_watch(inotify_, folder);
     folders_.clear();
     watched_.clear();
-    for (const std::filesystem::path& file : files) {
+    for (std::filesystem::path file : files) {
+        if (!file.has_filename()) file = file.parent_path();  // "run.uda/"
         // The folder, not the file: programs replace files by renaming others.
-        const std::filesystem::path folder = file.has_parent_path() ? file.parent_path() : ".";
-        const int number =
-            inotify_add_watch(inotify_, folder.c_str(), IN_CLOSE_WRITE | IN_MOVE | IN_DELETE);
-        if (number < 0) continue;
-        watched_.push_back({number, file.filename().string()});
-        if (std::ranges::find(folders_, number) == folders_.end()) folders_.push_back(number);
+        add(file.has_parent_path() ? file.parent_path() : ".", file.filename().string());
+        std::error_code failure;
+        if (std::filesystem::is_directory(file, failure)) add_archive(file);
+    }
+}
+
+void FileWatcher::add(const std::filesystem::path& folder, std::string pattern) {
+    const int number =
+        inotify_add_watch(inotify_, folder.c_str(), IN_CLOSE_WRITE | IN_MOVE | IN_DELETE);
+    if (number < 0) return;
+    watched_.push_back({number, std::move(pattern)});
+    if (std::ranges::find(folders_, number) == folders_.end()) folders_.push_back(number);
+}
+
+/// Whatever changes in a folder that is read as one file, or in the folders below it. The kernel
+/// does not watch any number of them; a step that is added to an archive changes its topmost
+/// folder.
+void FileWatcher::add_archive(const std::filesystem::path& folder) {
+    constexpr std::size_t kMostFolders = 1000;
+    add(folder, "*");
+    std::error_code failure;
+    std::filesystem::recursive_directory_iterator entry(folder, failure);
+    for (; !failure && entry != std::filesystem::recursive_directory_iterator();
+         entry.increment(failure)) {
+        if (folders_.size() >= kMostFolders) return;
+        std::error_code unreadable;
+        if (entry->is_directory(unreadable)) add(entry->path(), "*");
     }
 }
 

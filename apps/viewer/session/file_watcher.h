@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <functional>
 #include <mutex>
+#include <string>
 #include <thread>
 #include <vector>
 
@@ -20,10 +21,13 @@ class FileWatcher {
     FileWatcher& operator=(const FileWatcher&) = delete;
     ~FileWatcher();
 
-    /// Watches these files, and no others any more. A name may hold * and ?.
+    /// Watches these files, and no others any more. A name may hold * and ?. Of a folder, all that
+    /// is in it is watched.
     void watch(const std::vector<std::filesystem::path>& files);
 
   private:
+    void add(const std::filesystem::path& folder, std::string pattern);
+    void add_archive(const std::filesystem::path& folder);
     void run();
     bool drain();
 

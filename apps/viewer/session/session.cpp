@@ -57,7 +57,9 @@ void Session::open(std::vector<std::filesystem::path> files,
 }
 
 void Session::reload() {
-    if (!files_.empty()) load(true);
+    if (files_.empty()) return;
+    watcher_.watch(files_);  // an archive may have got new folders
+    load(true);
 }
 
 void Session::load(bool keep_camera) {
@@ -257,7 +259,7 @@ bool Session::update() {
     }
     if (auto result = exporter_.take()) {
         if (result->error.empty()) {
-            say(fmt::format("Wrote {}", result->file.string()));
+            say(fmt::format("Wrote {}", std::filesystem::absolute(result->file).string()));
         } else {
             say(result->error, true);
         }
@@ -299,7 +301,7 @@ bool Session::export_picture(const std::filesystem::path& output, ink::Size size
 
 void Session::save_scene(const std::filesystem::path& output) {
     viewer::save_scene(output, files_, settings_);
-    say(fmt::format("Wrote {}", output.string()));
+    say(fmt::format("Wrote {}", std::filesystem::absolute(output).string()));
 }
 
 }  // namespace inktrace::viewer

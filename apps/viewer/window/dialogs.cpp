@@ -6,7 +6,9 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <filesystem>
 #include <string>
+#include <system_error>
 
 #include "window/shortcuts.h"
 
@@ -84,6 +86,15 @@ void export_size(Interface& interface, ExportChoice& choice) {
     ImGui::Checkbox("Lines grow with the picture", &choice.scale_lines);
 }
 
+/// Where a file would be written, and whether one is there.
+void describe_place(const std::string& file) {
+    std::error_code failure;
+    const std::filesystem::path folder = std::filesystem::absolute(file, failure).parent_path();
+    const bool exists = std::filesystem::exists(file, failure);
+    ImGui::TextWrapped("%s %s", exists ? "Replaces the file that is there, in" : "In",
+                       folder.c_str());
+}
+
 void draw_export(Interface& interface) {
     static ExportChoice choice;
     Session& session = interface.session;
@@ -99,6 +110,7 @@ void draw_export(Interface& interface) {
         ImGui::InputText("##file", &choice.file, ImGuiInputTextFlags_EnterReturnsTrue);
     ImGui::TextDisabled("%s",
                         ".png .jpg .tiff .exr: pixels   .svg .pdf: curves   .json: scene file");
+    describe_place(choice.file);
     export_size(interface, choice);
     ImGui::Spacing();
     const float width = interface.px(110);

@@ -60,7 +60,8 @@ void slide_number(Interface& interface, const SettingInfo& info, const std::stri
     auto number = static_cast<float>(ink::parse_double(value).value_or(least));
     const bool logarithmic = least > 0.0F && most / least >= 50.0F;
     const ImGuiSliderFlags flags = logarithmic ? ImGuiSliderFlags_Logarithmic : 0;
-    const char* const format = most >= 100.0F ? "%.0f" : most >= 10.0F ? "%.1f" : "%.3g";
+    const char* const digits = most >= 100.0F ? "%.0f" : most >= 10.0F ? "%.1f" : "%.3g";
+    const char* const format = value.empty() ? "auto" : digits;
     if (ImGui::SliderFloat("##value", &number, least, most, format, flags)) {
         interface.set(info.name, number_text(number));
     }
@@ -69,7 +70,7 @@ void slide_number(Interface& interface, const SettingInfo& info, const std::stri
 void slide_whole(Interface& interface, const SettingInfo& info, const std::string& value) {
     auto number = static_cast<int>(ink::parse_int(value).value_or(0));
     if (ImGui::SliderInt("##value", &number, static_cast<int>(info.form.least),
-                         static_cast<int>(info.form.most))) {
+                         static_cast<int>(info.form.most), value.empty() ? "auto" : "%d")) {
         interface.set(info.name, std::to_string(number));
     }
 }
