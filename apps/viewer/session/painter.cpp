@@ -7,6 +7,10 @@
 #include <string>
 #include <utility>
 
+#include "base/parallel.h"
+#include "base/text.h"
+#include "session/history.h"
+
 namespace inktrace::viewer {
 
 namespace {
@@ -17,12 +21,38 @@ double ms_since(Clock::time_point start) {
 
 double megapixels(const Picture& picture) { return 1e-6 * picture.width() * picture.height(); }
 
-/// Side of the tiles that threads work on: rendering gives way between two of them.
-int tile_side(double ms_per_megapixel) {
+/// Side of the tiles that threads work on: rendering gives way between two of them. They differ in
+/// cost, some are several times as dear as most.
+int tile_side(double ms_per_megapixel, int threads) {
     constexpr double kTileMs = 8.0;
-    const double pixels = ms_per_megapixel > 0.0 ? kTileMs / ms_per_megapixel * 1e6 : 4096.0;
+    const double pixels = kTileMs / std::max(ms_per_megapixel * threads, 1e-3) * 1e6;
     const auto side = static_cast<unsigned>(std::clamp(std::sqrt(pixels), 8.0, 64.0));
     return static_cast<int>(std::bit_floor(side));
+}
+
+/// How many rays the picture in full takes for each of one with `quick_settings`, about.
+double ray_ratio(const Settings& settings) {
+    const auto number = [&](const char* name) {
+        return ink::parse_double(settings.get(name)).value_or(1.0);
+    };
+    const std::string aa = settings.get("aa");
+    const std::size_t colon = aa.find(':');
+    double ratio = number("lattice") * number("lattice");
+    if (colon != std::string::npos) {
+        ratio = std::max(ratio, ink::parse_double(aa.substr(colon + 1)).value_or(1.0));
+    }
+    if (settings.get("method") != "stencil") return ratio;
+    const double sides = 2.0 * number("quality") + 1.0;
+    return ratio * sides * sides / 9.0;
+}
+
+/// All that a picture costs by, but the view.
+std::string cost_key(const Settings& settings) {
+    std::string key;
+    for (const auto& [name, value] : settings.changed()) {
+        if (name == "size" || !is_of_view(name)) key += name + "=" + value + "\n";
+    }
+    return key;
 }
 
 }  // namespace
@@ -91,6 +121,7 @@ void Painter::quick(const PaintRequest& request) {
     auto picture = std::make_shared<const Picture>(request.renderer->render(settings, options));
     const double ms = ms_since(start);
     pace_.frame_took(scale, ms);
+    guess_cost(request, ms / (scale * scale * megapixels(*picture)));
     shown_exactly_ = scale == 1.0 && settings.changed() == request.settings.changed();
     finish({.picture = std::move(picture),
             .settings = request.settings,
@@ -100,9 +131,20 @@ void Painter::quick(const PaintRequest& request) {
             .latency_ms = ms_since(request.asked)});
 }
 
+/// Until a picture in full tells.
+void Painter::guess_cost(const PaintRequest& request, double quick_ms_per_megapixel) {
+    std::string key = cost_key(request.settings);
+    if (cost_of_.lock() == request.renderer && key == cost_key_) return;
+    cost_of_ = request.renderer;
+    cost_key_ = std::move(key);
+    ms_per_megapixel_ = quick_ms_per_megapixel * ray_ratio(request.settings);
+}
+
 void Painter::in_full(const PaintRequest& request) {
     Settings settings = request.settings;
-    settings.set("tile", std::to_string(tile_side(ms_per_megapixel_)));
+    const int threads = static_cast<int>(ink::parse_int(settings.get("threads")).value_or(0));
+    const int side = tile_side(ms_per_megapixel_, threads > 0 ? threads : ink::hardware_threads());
+    settings.set("tile", std::to_string(side));
     RenderOptions options;
     options.cancel = &cancel_;
     const auto start = Clock::now();

@@ -62,6 +62,7 @@ class Painter {
   private:
     void run();
     void quick(const PaintRequest& request);
+    void guess_cost(const PaintRequest& request, double quick_ms_per_megapixel);
     void in_full(const PaintRequest& request);
     void learn_plain(const PaintRequest& request);
     void finish(Painting painting);
@@ -82,7 +83,9 @@ class Painter {
     Pace pace_;
     std::weak_ptr<const Renderer> plain_of_;  ///< whose frames without lines the pace knows,
     std::string plain_size_;                  ///< and of which size
-    double ms_per_megapixel_ = 0.0;           ///< of pictures in full, as far as known
+    double ms_per_megapixel_ = 0.0;           ///< of pictures in full, as far as known,
+    std::weak_ptr<const Renderer> cost_of_;   ///< of this renderer
+    std::string cost_key_;                    ///< and for these settings
     bool shown_exactly_ = false;              ///< the quick picture was the picture in full
     std::thread thread_;
 };
