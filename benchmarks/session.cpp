@@ -77,26 +77,34 @@ class Turning {
         }
     }
 
-    std::vector<double> plain_ms, frame_ms, latency;
+    /// From events to pictures, in the time from one picture to the next.
+    double latency(double part) const {
+        return quantile(latency_ms, part) / quantile(interval_ms, 0.5);
+    }
+
+    std::vector<double> plain_ms, frame_ms, latency_ms, interval_ms;
     double share = 1.0;
+    std::uint64_t most_pictures = 0;  ///< after an event, up to the first that shows it
 
   private:
     struct Event {
         std::string eye;
         Clock::time_point time;
+        std::uint64_t pictures;  ///< that there were before it
     };
 
     void turn(int frames) {
-        constexpr double kBetweenEvents = 8.0;
+        constexpr auto kBetweenEvents = std::chrono::milliseconds(8);
         std::deque<Event> events;
+        last_shown_ = {};
         std::uint64_t seen = driver_.session.picture_number();
         for (int shown = 0; shown < frames;) {
             driver_.turn(0.7, 0.2);
-            events.push_back({driver_.session.settings().get("eye"), Clock::now()});
-            const auto next = Clock::now() + std::chrono::microseconds(int(kBetweenEvents * 1e3));
+            events.push_back({driver_.session.settings().get("eye"), Clock::now(),
+                              driver_.session.picture_number()});
+            const auto next = Clock::now() + kBetweenEvents;
             while (Clock::now() < next) {
-                driver_.wait(
-                    std::chrono::duration<double, std::milli>(std::min(1.0, kBetweenEvents)));
+                driver_.take_news(next);
                 if (driver_.session.picture_number() == seen) continue;
                 seen = driver_.session.picture_number();
                 ++shown;
@@ -113,15 +121,20 @@ class Turning {
             std::ranges::find_if(events, [&](const Event& event) { return event.eye == eye; });
         if (shown == events.end()) return;
         frame_ms.push_back(painting.frame_ms);
+        if (last_shown_ != Clock::time_point{}) interval_ms.push_back(ms_since(last_shown_));
+        last_shown_ = Clock::now();
         share = painting.scale;
         for (auto event = events.begin(); event <= shown; ++event) {
-            latency.push_back(ms_since(event->time) / painting.frame_ms);
+            latency_ms.push_back(ms_since(event->time));
+            const std::uint64_t pictures = driver_.session.picture_number() - event->pictures;
+            most_pictures = std::max(most_pictures, pictures);
         }
         events.erase(events.begin(), shown + 1);
     }
 
     Driver& driver_;
     const inktrace::Renderer& renderer_;
+    Clock::time_point last_shown_;
 };
 
 /// Moves the camera at different moments of pictures being refined.
@@ -159,15 +172,17 @@ SessionRow measure_session(const std::filesystem::path& file, int side, int roun
     Turning turning(driver, renderer);
     constexpr int kFrames = 20;
     turning.round(kFrames);  // the pace settles
-    turning.plain_ms.clear();
-    turning.frame_ms.clear();
-    turning.latency.clear();
+    for (auto* const times :
+         {&turning.plain_ms, &turning.frame_ms, &turning.latency_ms, &turning.interval_ms}) {
+        times->clear();
+    }
     for (int k = 0; k < rounds; ++k) turning.round(kFrames);
     row.plain_ms = quantile(turning.plain_ms, 0.5);
     row.turning_ms = quantile(turning.frame_ms, 0.5);
     row.rays_share = turning.share;
-    row.latency = quantile(turning.latency, 0.5);
-    row.latency_99 = quantile(turning.latency, 0.99);
+    row.latency = turning.latency(0.5);
+    row.latency_99 = turning.latency(0.99);
+    row.latency_pictures = static_cast<int>(turning.most_pictures);
 
     driver.wait_for_picture();
     row.refined_ms = session.painting().frame_ms;
@@ -183,20 +198,21 @@ SessionRow measure_session(const std::filesystem::path& file, int side, int roun
 }
 
 void print_heading_of_sessions() {
-    fmt::print("{:<30}{:>9}{:>9}{:>7}{:>6}{:>14}{:>10}{:>7}{:>24}\n", "", "no lines", "turning",
+    fmt::print("{:<30}{:>9}{:>9}{:>7}{:>6}{:>19}{:>10}{:>7}{:>24}\n", "", "no lines", "turning",
                "ratio", "rays", "latency", "refined", "exact", "gives way, ms");
-    fmt::print("{:<30}{:>9}{:>9}{:>7}{:>6}{:>14}{:>10}{:>7}{:>24}\n", "", "ms", "ms", "", "",
-               "frames, 99 %", "ms", "", "median, 99 %, most");
+    fmt::print("{:<30}{:>9}{:>9}{:>7}{:>6}{:>19}{:>10}{:>7}{:>24}\n", "", "ms", "ms", "", "",
+               "frames, 99 %, most", "ms", "", "median, 99 %, most");
     std::fflush(stdout);
 }
 
 void print(const SessionRow& row) {
     fmt::print(
-        "{:<30}{:>9.2f}{:>9.2f}{:>7.2f}{:>6.3g}{:>7.2f}{:>7.2f}{:>10.1f}{:>7}{:>8.1f}{:>8.1f}{:>8.1"
+        "{:<30}{:>9.2f}{:>9.2f}{:>7.2f}{:>6.3g}{:>7.2f}{:>7.2f}{:>5}{:>10.1f}{:>7}{:>8.1f}{:>8.1f}{"
+        ":>8.1"
         "f}{:>5}\n",
         row.what, row.plain_ms, row.turning_ms, row.turning_ms / row.plain_ms, row.rays_share,
-        row.latency, row.latency_99, row.refined_ms, row.exact ? "yes" : "NO", row.gives_way_ms,
-        row.gives_way_99_ms, row.gives_way_most_ms, row.moves);
+        row.latency, row.latency_99, row.latency_pictures, row.refined_ms, row.exact ? "yes" : "NO",
+        row.gives_way_ms, row.gives_way_99_ms, row.gives_way_most_ms, row.moves);
     std::fflush(stdout);
 }
 

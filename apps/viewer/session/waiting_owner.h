@@ -25,15 +25,10 @@ class WaitingOwner {
             await_news(std::chrono::milliseconds(5));
         }
     }
-    /// Takes in news for some time.
-    void wait(std::chrono::duration<double, std::milli> time) {
-        const auto start = Clock::now();
-        for (;;) {
-            const std::chrono::duration<double, std::milli> left = time - (Clock::now() - start);
-            if (left.count() <= 0.0) return;
-            await_news(left);
-            session.update();
-        }
+    /// Takes in the next news, if there are any before a moment.
+    void take_news(Clock::time_point until) {
+        await_news(until - Clock::now());
+        session.update();
     }
     /// Whether the picture of the present settings is there in full.
     bool has_picture() const {
