@@ -44,8 +44,9 @@ ink::Size Viewer::picture_size() const {
 std::optional<Clock::time_point> Viewer::next_moment() const {
     if (frames_to_draw_ > 0) return Clock::now();
     auto moment = session_.next_update();
-    const auto look = hand_.next_look();
-    if (look && (!moment || *look < *moment)) moment = look;
+    for (const auto& other : {hand_.next_look(), next_frame_}) {
+        if (other && (!moment || *other < *moment)) moment = other;
+    }
     return moment;
 }
 
@@ -53,15 +54,41 @@ void Viewer::run() {
     while (!window_.closed()) {
         window_.wait(next_moment());
         take_input();
-        if (session_.update()) frames_to_draw_ = std::max(frames_to_draw_, 1);
-        if (window_.take_activity()) frames_to_draw_ = kFramesAfterInput;
-        if (hand_.look()) frames_to_draw_ = std::max(frames_to_draw_, 1);
+        const bool news = session_.update();
+        if (next_frame_ && Clock::now() >= *next_frame_) draw_frames(1);
+        if (window_.take_activity()) draw_frames(kFramesAfterInput);
+        if (hand_.look()) draw_frames(1);
         title();
-        if (!window_.visible()) frames_to_draw_ = 0;
-        if (frames_to_draw_ == 0) continue;
-        --frames_to_draw_;
-        draw();
+        if (!window_.visible()) {
+            frames_to_draw_ = 0;
+            next_frame_.reset();
+        } else if (frames_to_draw_ == 0 && news && shows_other_picture()) {
+            draw_other_picture();
+        } else {
+            if (news) draw_frames(1);
+            if (frames_to_draw_ == 0) continue;
+            --frames_to_draw_;
+            draw();
+        }
     }
+}
+
+void Viewer::draw_frames(int count) { frames_to_draw_ = std::max(frames_to_draw_, count); }
+
+/// Whether the picture can be exchanged and the rest of the window be left alone for a moment:
+/// nothing lies over the picture.
+bool Viewer::shows_other_picture() const {
+    return session_.painting().picture && !session_.painting().exact && !interface_.performance &&
+           session_.settings().get("background") != "transparent" && !window_.interface_is_open() &&
+           picture_size() == session_.size() && frame_size_ == window_.size();
+}
+
+/// As long as a hand moves, the panel and the bars follow ten times a second: they take a software
+/// renderer longer than the picture does.
+void Viewer::draw_other_picture() {
+    constexpr auto kPause = std::chrono::milliseconds(100);
+    if (!next_frame_) next_frame_ = Clock::now() + kPause;
+    window_.redraw(*session_.painting().picture, session_.picture_number(), session_.size());
 }
 
 void Viewer::take_input() {
@@ -102,7 +129,6 @@ void Viewer::draw_picture(ink::Size picture) {
     if (!painting.picture) return draw_welcome(interface_, width, height);
     ImDrawList& list = *ImGui::GetBackgroundDrawList();
     const bool transparent = session_.settings().get("background") == "transparent";
-    list.AddRectFilled({0, 0}, {width, height}, IM_COL32(255, 255, 255, 255));
     const float cell = interface_.px(12);
     for (float y = 0; transparent && y < height; y += cell) {
         const bool odd = static_cast<int>(y / cell) % 2 != 0;
@@ -113,14 +139,18 @@ void Viewer::draw_picture(ink::Size picture) {
     }
     const Picture& pixels = *painting.picture;
     const bool same_size = pixels.width() == picture.width && pixels.height() == picture.height;
-    list.AddImage(window_.texture(pixels, session_.picture_number(), !same_size), {0, 0},
-                  {width, height});
+    void* const texture = window_.texture(pixels, session_.picture_number(), !same_size);
+    // Mixing takes a software renderer long.
+    if (!transparent) list.AddCallback(Window::cover, nullptr);
+    list.AddImage(texture, {0, 0}, {width, height});
+    if (!transparent) list.AddCallback(Window::mix, nullptr);
 }
 
 void Viewer::draw() {
     session_.resize(picture_size());
     const ink::Size picture = session_.size();
-    const ink::Size whole = window_.size();
+    const ink::Size whole = frame_size_ = window_.size();
+    next_frame_.reset();
     const auto width = static_cast<float>(picture.width);
     window_.set_quiet_area({0, 0, width, static_cast<float>(picture.height)});
     window_.begin_frame();
@@ -137,7 +167,7 @@ void Viewer::draw() {
                    static_cast<float>(whole.height));
     }
     draw_dialogs(interface_);
-    window_.end_frame();
+    window_.end_frame(picture);
 }
 
 }  // namespace inktrace::viewer

@@ -23,6 +23,9 @@ class Viewer {
 
   private:
     void take_input();
+    void draw_frames(int count);
+    bool shows_other_picture() const;
+    void draw_other_picture();
     void draw();
     void draw_picture(ink::Size picture);
     std::optional<Clock::time_point> next_moment() const;
@@ -33,7 +36,9 @@ class Viewer {
     Session session_;
     Interface interface_;
     Hand hand_;
-    int frames_to_draw_ = 0;
+    int frames_to_draw_ = 0;                       ///< at least, of the whole window
+    std::optional<Clock::time_point> next_frame_;  ///< when to draw all of it again
+    ink::Size frame_size_;                         ///< of the window, in the last frame
     std::string title_;
 };
 

@@ -209,7 +209,9 @@ void Window::start_interface() {
 }
 
 Window::~Window() {
-    if (texture_ != 0) glDeleteTextures(1, &texture_);
+    for (const unsigned texture : {texture_, rest_}) {
+        if (texture != 0) glDeleteTextures(1, &texture);
+    }
     ImGui_ImplOpenGL2_Shutdown();
     ImGui_ImplGlfw_Shutdown();
     ImGui::DestroyContext();
@@ -278,7 +280,12 @@ void Window::begin_frame() {
     ImGui::NewFrame();
 }
 
-void Window::end_frame() {
+bool Window::interface_is_open() const {
+    // Hints belong to what the pointer is over.
+    return ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopupId) || ImGui::IsAnyItemHovered();
+}
+
+void Window::end_frame(ink::Size picture) {
     ImGui::Render();
     const ink::Size now = size();
     glViewport(0, 0, now.width, now.height);
@@ -286,21 +293,89 @@ void Window::end_frame() {
     glClearColor(kPaper, kPaper, kPaper, 1.0F);
     glClear(GL_COLOR_BUFFER_BIT);
     ImGui_ImplOpenGL2_RenderDrawData(ImGui::GetDrawData());
+    keep_rest(picture);
     glfwSwapBuffers(window_);
     release_late_keys();
 }
 
-void* Window::texture(const Picture& picture, std::uint64_t number, bool smooth) {
-    if (texture_ == 0) glGenTextures(1, &texture_);
-    void* const id = reinterpret_cast<void*>(static_cast<std::uintptr_t>(texture_));
-    if (number == texture_number_) return id;
-    glBindTexture(GL_TEXTURE_2D, texture_);
-    const int filter = smooth ? GL_LINEAR : GL_NEAREST;
-    constexpr int kClampToEdge = 0x812F;  // OpenGL 1.2, which the header need not know
+namespace {
+
+constexpr int kClampToEdge = 0x812F;  // OpenGL 1.2, which the header need not know
+
+/// Makes a texture where there is none, and chooses it.
+void bind_texture(unsigned& texture, int filter) {
+    if (texture == 0) glGenTextures(1, &texture);
+    glBindTexture(GL_TEXTURE_2D, texture);
     glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, filter);
     glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, filter);
     glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, kClampToEdge);
     glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, kClampToEdge);
+}
+
+/// A rectangle of the window that shows a part of the chosen texture: left, top, right, bottom, in
+/// pixels from the upper left corner and in shares of the texture.
+void draw_part(const std::array<int, 4>& place, const std::array<float, 4>& part) {
+    const auto [left, top, right, bottom] = place;
+    const auto [u0, v0, u1, v1] = part;
+    glBegin(GL_QUADS);
+    glTexCoord2f(u0, v0);
+    glVertex2i(left, top);
+    glTexCoord2f(u1, v0);
+    glVertex2i(right, top);
+    glTexCoord2f(u1, v1);
+    glVertex2i(right, bottom);
+    glTexCoord2f(u0, v1);
+    glVertex2i(left, bottom);
+    glEnd();
+}
+
+}  // namespace
+
+/// What lies to the right of the picture and below it.
+void Window::keep_rest(ink::Size picture) {
+    const ink::Size now = size();
+    const int right = now.width - picture.width;
+    const int below = now.height - picture.height;
+    if (right < 0 || below < 0) return;
+    bind_texture(rest_, GL_NEAREST);
+    if (rest_size_ != now) {
+        glTexImage2D(GL_TEXTURE_2D, 0, GL_RGB, now.width, now.height, 0, GL_RGBA, GL_UNSIGNED_BYTE,
+                     nullptr);
+        rest_size_ = now;
+    }
+    // OpenGL counts rows from below.
+    glCopyTexSubImage2D(GL_TEXTURE_2D, 0, picture.width, 0, picture.width, 0, right, now.height);
+    glCopyTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, 0, 0, picture.width, below);
+}
+
+void Window::redraw(const Picture& picture, std::uint64_t number, ink::Size size) {
+    const ink::Size whole = this->size();
+    glViewport(0, 0, whole.width, whole.height);
+    glMatrixMode(GL_PROJECTION);
+    glLoadIdentity();
+    glOrtho(0, whole.width, whole.height, 0, -1, 1);
+    glMatrixMode(GL_MODELVIEW);
+    glLoadIdentity();
+    glDisable(GL_BLEND);
+    glEnable(GL_TEXTURE_2D);
+    glTexEnvi(GL_TEXTURE_ENV, GL_TEXTURE_ENV_MODE, GL_REPLACE);
+    const bool smooth = picture.width() != size.width || picture.height() != size.height;
+    texture(picture, number, smooth);
+    glBindTexture(GL_TEXTURE_2D, texture_);
+    draw_part({0, 0, size.width, size.height}, {0, 0, 1, 1});
+    glBindTexture(GL_TEXTURE_2D, rest_);
+    const float u = static_cast<float>(size.width) / static_cast<float>(whole.width);
+    const float v = 1.0F - static_cast<float>(size.height) / static_cast<float>(whole.height);
+    draw_part({size.width, 0, whole.width, whole.height}, {u, 1, 1, 0});
+    draw_part({0, size.height, size.width, whole.height}, {0, v, u, 0});
+    glDisable(GL_TEXTURE_2D);
+    glfwSwapBuffers(window_);
+}
+
+void* Window::texture(const Picture& picture, std::uint64_t number, bool smooth) {
+    bind_texture(texture_, smooth ? GL_LINEAR : GL_NEAREST);
+    void* const id = reinterpret_cast<void*>(static_cast<std::uintptr_t>(texture_));
+    if (number == texture_number_) return id;
     glPixelStorei(GL_UNPACK_ROW_LENGTH, 0);
     const ink::Size size{picture.width(), picture.height()};
     if (size == texture_size_) {
@@ -314,6 +389,11 @@ void* Window::texture(const Picture& picture, std::uint64_t number, bool smooth)
     texture_number_ = number;
     return id;
 }
+
+void Window::cover(const ImDrawList* /*list*/, const ImDrawCmd* /*command*/) {
+    glDisable(GL_BLEND);
+}
+void Window::mix(const ImDrawList* /*list*/, const ImDrawCmd* /*command*/) { glEnable(GL_BLEND); }
 
 void Window::copy(const std::string& text) { glfwSetClipboardString(window_, text.c_str()); }
 

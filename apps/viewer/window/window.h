@@ -12,6 +12,8 @@
 #include "inktrace/render.h"
 
 struct GLFWwindow;
+struct ImDrawCmd;
+struct ImDrawList;
 
 namespace inktrace::viewer {
 
@@ -58,11 +60,22 @@ class Window {
     bool interface_has_pointer() const;
     bool interface_has_keys() const;
 
+    /// Whether a menu, a dialog or a hint may lie over the picture.
+    bool interface_is_open() const;
+
     void begin_frame();
-    void end_frame();
+    /// `picture`: size of the picture, at the upper left corner.
+    void end_frame(ink::Size picture);
+    /// Another picture there, and about it what the last frame showed.
+    void redraw(const Picture& picture, std::uint64_t number, ink::Size size);
 
     /// The picture as a texture of Dear ImGui; it is uploaded when `number` is another one.
     void* texture(const Picture& picture, std::uint64_t number, bool smooth);
+
+    /// Callbacks of Dear ImGui: what is drawn next covers what is there, or is mixed with it, as
+    /// usual.
+    static void cover(const ImDrawList*, const ImDrawCmd*);
+    static void mix(const ImDrawList*, const ImDrawCmd*);
 
     void copy(const std::string& text);
 
@@ -71,6 +84,7 @@ class Window {
     void start_interface();
     void pass_on(int key, int scancode, int action, int mods);
     void release_late_keys();
+    void keep_rest(ink::Size picture);
 
     struct Release {
         int key, scancode, mods;
@@ -87,6 +101,8 @@ class Window {
     unsigned texture_ = 0;
     ink::Size texture_size_;
     std::uint64_t texture_number_ = 0;
+    unsigned rest_ = 0;  ///< texture of the window about the picture, as of the last frame
+    ink::Size rest_size_;
 };
 
 }  // namespace inktrace::viewer
