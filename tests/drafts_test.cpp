@@ -1,0 +1,160 @@
+// Pictures of a moving camera, drawn from fewer rays.
+
+#include <array>
+#include <cmath>
+#include <cstdlib>
+
+#include "session/pace.h"
+#include "session_owner.h"
+
+namespace inktrace::viewer {
+namespace {
+
+namespace fs = std::filesystem;
+using namespace test;
+using ink::test::TemporaryFolder;
+
+TEST(Pace, TakesFewerRaysWhereLinesCostMuchOfAFrame) {
+    Pace pace;
+    pace.plain_took(25.0);
+    pace.frame_took(1.0, 29.0);
+    EXPECT_EQ(pace.scale(), 1.0);
+    pace.frame_took(1.0, 120.0);
+    EXPECT_LE(pace.scale(), 0.5);
+}
+
+TEST(Pace, HoldsTheFrameRateHoweverLongAFrameTakesWithoutLines) {
+    Pace pace;
+    pace.plain_took(400.0);
+    pace.frame_took(1.0, 300.0);
+    EXPECT_LE(pace.scale(), 0.375);
+}
+
+TEST(Pace, TakesNoFewerRaysWhereThatIsNoFaster) {
+    Pace pace;
+    pace.plain_took(10.0);
+    for (int k = 0; k < 60; ++k) pace.frame_took(pace.scale(), 35.0);  // whatever it draws
+    EXPECT_EQ(pace.scale(), 1.0);
+}
+
+TEST(Pace, StaysWithAScaleWhileFramesCostTheSame) {
+    for (const double full_ms : {20.0, 50.0, 90.0, 300.0}) {
+        Pace pace;
+        for (int k = 0; k < 5; ++k) pace.frame_took(pace.scale(), full_ms * pace.scale());
+        const double settled = pace.scale();
+        for (int k = 0; k < 20; ++k) {
+            pace.frame_took(pace.scale(), full_ms * pace.scale());
+            EXPECT_EQ(pace.scale(), settled) << full_ms;
+        }
+    }
+}
+
+TEST(ScaledSettings, KeepTheShareOfInk) {
+    Scene scene;
+    scene.load(sample());
+    const Renderer renderer(std::move(scene));
+    Settings settings;
+    settings.set("size", "400x300").set("compose", "lines").set("line-width", "6px");
+    settings.set("line", "silhouette:width=1mm").set("line-density", "1");
+    const auto ink = [&](const Settings& of) {
+        const Picture picture = renderer.render(of);
+        double sum = 0.0;
+        for (std::size_t i = 0; i < picture.rgba().size(); i += 4) sum += 255 - picture.rgba()[i];
+        return sum / static_cast<double>(picture.rgba().size());
+    };
+    const double full = ink(settings);
+    EXPECT_NEAR(ink(settings.scaled(0.5)), full, 0.02 * full);
+    EXPECT_NEAR(ink(settings.scaled(2.0)), full, 0.02 * full);
+}
+
+/// Of two pictures of one size, per channel.
+double mean_difference(const Picture& a, const Picture& b) {
+    double sum = 0.0;
+    for (std::size_t i = 0; i < a.rgba().size(); ++i) sum += std::abs(a.rgba()[i] - b.rgba()[i]);
+    return sum / static_cast<double>(a.rgba().size());
+}
+
+double mean_ink(const Picture& picture) {
+    double sum = 0.0;
+    for (const std::uint8_t byte : picture.rgba()) sum += 255 - byte;
+    return sum / static_cast<double>(picture.rgba().size());
+}
+
+Renderer draft_scene(const fs::path& file) {
+    Scene scene;
+    scene.load(file);
+    return Renderer(std::move(scene));
+}
+
+TEST(Draft, DrawsTheLinesOfThePictureInFullInTheirPlacesAndWidths) {
+    for (const char* const file :
+         {"samples/acetaminophen.xyz", "tests/pictures/box_on_floor.obj"}) {
+        const Renderer renderer = draft_scene(ink::test::source_dir() / file);
+        for (const char* const lines :
+             {"silhouette,intersection,self-occlusion,crease,boundary", "all"}) {
+            Settings settings;
+            settings.set("size", "401x300").set("compose", "lines").set("lines", lines);
+            settings.set("line", "silhouette:width=4px,color=navy");
+            const Picture full = renderer.render(settings);
+            for (const double share : {0.75, 0.5, 0.25}) {
+                RenderOptions options;
+                options.draft = share;
+                const Picture draft = renderer.render(settings, options);
+                ASSERT_EQ(draft.width(), 401);
+                ASSERT_EQ(draft.height(), 300);
+                EXPECT_NEAR(mean_ink(draft), mean_ink(full), 0.03 * mean_ink(full))
+                    << file << ", " << lines << ", " << share;
+                EXPECT_LT(mean_difference(draft, full), 0.1 * mean_ink(full))
+                    << file << ", " << lines << ", " << share;
+                EXPECT_LT(draft.stats().rays, full.stats().rays);
+            }
+        }
+    }
+}
+
+TEST(Draft, LetsNoColorRunAcrossALine) {
+    // Two hemispheres of clear colours before white: with a line too thin to hide any bleeding.
+    const TemporaryFolder folder;
+    const fs::path file = folder.write("s.json", R"({"objects": [
+            {"type": "sphere", "center": [-0.8, 0, 0], "radius": 1,
+             "color": "#ff0000"},
+            {"type": "sphere", "center": [0.8, 0, 0], "radius": 1,
+             "color": "#0000ff"}]})");
+    const Renderer renderer = draft_scene(file);
+    Settings settings;
+    settings.set("size", "200x150").set("shade", "flat").set("line-width", "0.25px");
+    settings.set("aa", "none").set("view", "front").set("line-color", "white");
+    RenderOptions options;
+    options.draft = 0.25;
+    const Picture draft = renderer.render(settings, options);
+    const auto at = [&](int x, int y) { return draft.rgba().data() + 4 * (y * 200 + x); };
+    int clear = 0;
+    int mixed = 0;
+    for (int y = 0; y < 150; ++y) {
+        for (int x = 0; x < 200; ++x) {
+            const auto* const c = at(x, y);
+            const bool red = c[0] > 200 && c[2] < 60;
+            const bool blue = c[2] > 200 && c[0] < 60;
+            const bool white = c[0] > 200 && c[1] > 200 && c[2] > 200;
+            (red || blue || white ? clear : mixed) += 1;
+        }
+    }
+    // Outlines are 800 pixels long; a blur of four pixels would mix thousands.
+    EXPECT_LT(mixed, 500) << clear << " are clear";
+}
+
+TEST(Draft, OfMethodStencilIsThePictureOfFewerPixels) {
+    const Renderer renderer = draft_scene(sample());
+    Settings settings;
+    settings.set("size", "160x120").set("method", "stencil").set("quality", "1");
+    const Picture full = renderer.render(settings);
+    RenderOptions options;
+    options.draft = 0.5;
+    const Picture draft = renderer.render(settings, options);
+    ASSERT_EQ(draft.width(), 160);
+    EXPECT_LT(mean_difference(draft, full), 12.0);
+    EXPECT_LT(draft.stats().rays, full.stats().rays / 2);
+}
+
+}  // namespace
+}  // namespace inktrace::viewer
