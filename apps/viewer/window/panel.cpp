@@ -158,6 +158,7 @@ bool counts(const Interface& interface, const SettingInfo& info) {
     const Settings& settings = interface.session.settings();
     const std::string other = settings.get("method") == "edges" ? "stencil" : "edges";
     if (info.help.starts_with("Method " + other + ":")) return false;
+    if (info.name == "hidden-layers" && settings.get("hidden") == "none") return false;
     const std::string lines = settings.get("lines");
     const bool ridges = lines == "all" || lines.find("ridge") != std::string::npos;
     return ridges || !info.help.starts_with("Apparent ridges:");

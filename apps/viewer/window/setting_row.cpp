@@ -121,7 +121,8 @@ void type_text(Interface& interface, const SettingInfo& info, const std::string&
                            ImGuiComboFlags_NoPreview | ImGuiComboFlags_PopupAlignLeft)) {
         return;
     }
-    if (ImGui::Selectable("auto", value.empty())) interface.set(info.name, "");
+    const bool can_be_auto = Settings().get(info.name).empty();
+    if (can_be_auto && ImGui::Selectable("auto", value.empty())) interface.set(info.name, "");
     for (const std::string& word : words) {
         if (ImGui::Selectable(word.c_str(), word == value)) interface.set(info.name, word);
     }
