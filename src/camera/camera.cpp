@@ -34,7 +34,8 @@ Axes standard_axes(View view) {
 
 Axes automatic_axes(const Scene& scene) {
     const bool has_mesh = std::ranges::any_of(scene.objects(), [](const Object& object) {
-        return object.kind == ObjectKind::mesh || object.kind == ObjectKind::shape;
+        // Wires of a mesh without area would be seen end on.
+        return std::holds_alternative<Mesh>(object.shape) || object.kind == ObjectKind::shape;
     });
     // 30 degrees to the side, 20 above: three faces of a box show, each with an area of its own.
     constexpr Axes kOblique{{0.46985, 0.34202, 0.81380}, {0, 1, 0}};
