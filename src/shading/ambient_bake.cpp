@@ -122,7 +122,7 @@ std::uint64_t next_number() {
 
 struct AmbientBake::Impl {
     Impl(const Scene& all, const Tracer& scene_tracer, int quality, const std::atomic<bool>* cancel)
-        : scene(all), directions(6 << (quality - 1)), rays(scene_tracer, 16 << quality) {
+        : scene(all), directions((13 << quality) / 4), rays(scene_tracer, 16 << quality) {
         std::size_t ball_count = 0;
         std::size_t triangles = 0;
         std::size_t corners = 0;
