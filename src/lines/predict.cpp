@@ -180,32 +180,31 @@ std::optional<Prediction> predict_crossing(const Viewpoint& viewpoint, Vec2f a, 
     if ((!second && !a_ends) || (!first && !b_begins)) return {};
     const double end = a_ends ? ball_a.limb(rays, a_0.inside, a_1.inside) : 1.0;
     const double begin = b_begins ? ball_b.limb(rays, b_0.inside, b_1.inside) : 0.0;
-    // Along an edge of a pixel the nearest point of a passing ray hardly moves in depth.
-    const auto limb_t = [&](double s, const Passage& at_0, const Passage& at_1) {
-        const double t_0 = at_0.nearest / length_0;
-        return t_0 + s * (at_1.nearest / length_1 - t_0);
+    const auto limb_t = [&](const BallOnEdge& ball, double s) {
+        const Ray ray = rays.at(s);
+        return ball.at(ray).nearest / ray.length();
     };
     const auto entry = [&](const BallOnEdge& ball, double s) {
         const Ray ray = rays.at(s);
         return ball.at(ray).entry() / ray.length();
     };
 
-    if (!second) return found(Kind::first_limb, end, limb_t(end, a_0, a_1));
-    if (!first) return found(Kind::second_limb, begin, limb_t(begin, b_0, b_1));
+    if (!second) return found(Kind::first_limb, end, limb_t(ball_a, end));
+    if (!first) return found(Kind::second_limb, begin, limb_t(ball_b, begin));
     if (end < begin) {
-        return found(Kind::gap, 0.5 * (end + begin),
-                     std::min(a_0.nearest / length_0, b_1.nearest / length_1));
+        const double middle = 0.5 * (end + begin);
+        return found(Kind::gap, middle, std::min(limb_t(ball_a, middle), limb_t(ball_b, middle)));
     }
 
     double before = a_0.entry() - b_0.entry();  // negative while the first is in front
     if (b_begins) {
-        const double t = limb_t(begin, b_0, b_1);
+        const double t = limb_t(ball_b, begin);
         before = entry(ball_a, begin) - t;
         if (before >= 0.0) return found(Kind::second_limb, begin, t);
     }
     double after = a_1.entry() - b_1.entry();
     if (a_ends) {
-        const double t = limb_t(end, a_0, a_1);
+        const double t = limb_t(ball_a, end);
         after = t - entry(ball_b, end);
         if (after <= 0.0) return found(Kind::first_limb, end, t);
     }

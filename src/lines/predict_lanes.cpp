@@ -33,6 +33,7 @@ HWY_INLINE Number load(const Lanes<float>& lanes, int first) {
 HWY_INLINE void store(Number value, int first, Lanes<float>& lanes) {
     hn::StoreU(hn::DemoteTo(kFloats, value), kFloats, lanes.data() + first);
 }
+HWY_INLINE Number one() { return set(1.0); }
 HWY_INLINE Number pick(Mask mask, Number yes, Number no) { return hn::IfThenElse(mask, yes, no); }
 
 struct Vector {
@@ -91,30 +92,24 @@ HWY_INLINE Passage pass(const Ball& ball, const Ray& ray) {
 HWY_INLINE Number entry(const Passage& passage) {
     return hn::Sub(passage.nearest, hn::Sqrt(hn::Max(passage.inside, set(0.0))));
 }
-HWY_INLINE Number entry_t(const Ball& ball, const Ray& ray) {
-    return hn::Div(entry(pass(ball, ray)), length(ray.direction));
+/// Not of unit length: whether one depth is before another does not depend on it.
+HWY_INLINE Number entry_or_limb(Mask at_limb, const Passage& passage) {
+    return pick(at_limb, passage.nearest, entry(passage));
 }
 
-struct Roots {
-    Number first, second;
-};
-/// Where a parabola with these values at 0, 1/2 and 1 is zero; NaN where it is not.
-HWY_INLINE Roots parabola_roots(Number at_0, Number middle, Number at_1) {
+/// The root of a parabola with these values at 0, 1/2 and 1, whose signs at 0 and 1 differ. Two
+/// forms lose no digits; the direction in which it passes through zero tells which is between.
+HWY_INLINE Number root_between(Number at_0, Number middle, Number at_1) {
+    const Number zero = set(0.0);
     const Number b = hn::Sub(hn::Sub(hn::Mul(set(4.0), middle), hn::Mul(set(3.0), at_0)), at_1);
     const Number a = hn::Sub(hn::Sub(at_1, at_0), b);
-    const Number root = hn::Sqrt(hn::Sub(hn::Mul(b, b), hn::Mul(hn::Mul(set(4.0), a), at_0)));
+    const Number root =
+        hn::Sqrt(hn::Max(hn::Sub(hn::Mul(b, b), hn::Mul(hn::Mul(set(4.0), a), at_0)), zero));
     const Number q = hn::Mul(set(-0.5), hn::Add(b, hn::CopySign(root, b)));
-    const Number zero = set(0.0);
-    const Number first = pick(hn::Ne(q, zero), hn::Div(at_0, q), zero);
-    return {first, pick(hn::Ne(a, zero), hn::Div(q, a), first)};
-}
-/// The root in the middle of a lattice edge.
-HWY_INLINE Number limb(Number at_0, Number middle, Number at_1) {
-    const Roots roots = parabola_roots(at_0, middle, at_1);
-    const Number half = set(0.5);
-    const Mask second =
-        hn::Gt(hn::Abs(hn::Sub(roots.first, half)), hn::Abs(hn::Sub(roots.second, half)));
-    return hn::Min(hn::Max(pick(second, roots.second, roots.first), set(0.0)), set(1.0));
+    const Mask small = hn::Xor(hn::Lt(b, zero), hn::Le(at_0, zero));
+    const Number divisor = pick(small, q, a);
+    const Number s = hn::Div(pick(small, at_0, q), pick(hn::Ne(divisor, zero), divisor, one()));
+    return hn::Min(hn::Max(s, zero), one());
 }
 
 /// Zero where a ray meets the plane normal . (x - centre) = height on the ball.
@@ -132,7 +127,6 @@ HWY_INLINE Number number(Prediction::Kind kind) { return set(static_cast<double>
 HWY_INLINE void predict(const Viewpoint& viewpoint, const EdgeLanes& edges, int i,
                         PredictionLanes& predictions) {
     const Number zero = set(0.0);
-    const Number one = set(1.0);
     const Number half = set(0.5);
     const auto ray = [&](Number x, Number y) {
         return Ray{field_at(viewpoint.origin, x, y), field_at(viewpoint.direction, x, y)};
@@ -162,40 +156,39 @@ HWY_INLINE void predict(const Viewpoint& viewpoint, const EdgeLanes& edges, int 
     const Mask second_shows = shows(b_1, load(edges.second.t, i), b, length_1);
     const Mask a_ends = hn::And(first, hn::Le(a_1.inside, zero));
     const Mask b_begins = hn::And(second, hn::Le(b_0.inside, zero));
-    const Number end = pick(a_ends, limb(a_0.inside, pass(a, middle).inside, a_1.inside), one);
-    const Number begin = pick(b_begins, limb(b_0.inside, pass(b, middle).inside, b_1.inside), zero);
-    const Number a_t = hn::Div(a_0.nearest, length_0);
-    const Number b_t = hn::Div(b_0.nearest, length_0);
-    const Number b_t_1 = hn::Div(b_1.nearest, length_1);
-    const Number a_end_t = hn::Add(a_t, hn::Mul(end, hn::Sub(hn::Div(a_1.nearest, length_1), a_t)));
-    const Number b_begin_t = hn::Add(b_t, hn::Mul(begin, hn::Sub(b_t_1, b_t)));
+    const Number end =
+        pick(a_ends, root_between(a_0.inside, pass(a, middle).inside, a_1.inside), one());
+    const Number begin =
+        pick(b_begins, root_between(b_0.inside, pass(b, middle).inside, b_1.inside), zero);
 
-    // Negative while the first is in front.
-    const Number before = pick(b_begins, hn::Sub(entry_t(a, ray_at(ray_0, step, begin)), b_begin_t),
-                               hn::Sub(entry(a_0), entry(b_0)));
-    const Number after = pick(a_ends, hn::Sub(a_end_t, entry_t(b, ray_at(ray_0, step, end))),
-                              hn::Sub(entry(a_1), entry(b_1)));
+    // Where each ends, and where not, at the edge's ends; `before` is negative while the first is
+    // in front.
+    const Ray ray_begin = ray_at(ray_0, step, begin);
+    const Ray ray_end = ray_at(ray_0, step, end);
+    const Passage b_begin = pass(b, ray_begin);
+    const Passage a_end = pass(a, ray_end);
+    const Number before = hn::Sub(entry(pass(a, ray_begin)), entry_or_limb(b_begins, b_begin));
+    const Number after = hn::Sub(entry_or_limb(a_ends, a_end), entry(pass(b, ray_end)));
 
     const Vector normal = b.centre - a.centre;
     const Number height =
         hn::Mul(half, hn::Sub(hn::Add(dot(normal, normal), hn::Mul(a.radius, a.radius)),
                               hn::Mul(b.radius, b.radius)));
-    const Number span = hn::Sub(end, begin);
-    const auto off_seam = [&](Number way) {
-        return off_ball(ray_at(ray_0, step, hn::Add(begin, hn::Mul(way, span))), a, normal, height);
-    };
-    const Roots roots = parabola_roots(off_seam(zero), off_seam(half), off_seam(one));
-    const auto within = [&](Number root) { return hn::And(hn::Ge(root, zero), hn::Le(root, one)); };
-    const Mask first_within = within(roots.first);
-    const Number seam_at =
-        hn::Add(begin, hn::Mul(span, pick(first_within, roots.first, roots.second)));
+    const auto off_seam = [&](const Ray& r) { return off_ball(r, a, normal, height); };
+    const Number seam_begin = off_seam(ray_begin);
+    const Number seam_end = off_seam(ray_end);
+    const Ray ray_between = ray_at(ray_0, step, hn::Mul(half, hn::Add(begin, end)));
+    const Number seam_way = root_between(seam_begin, off_seam(ray_between), seam_end);
+    const Number seam_at = hn::Add(begin, hn::Mul(hn::Sub(end, begin), seam_way));
+    // Where both spheres' seams, in front and behind, lie on the edge, or none does, it is
+    // searched.
+    const Mask one_seam = hn::Xor(hn::Gt(seam_begin, zero), hn::Gt(seam_end, zero));
 
     const Mask both = hn::And(first, second);
     const Mask ends_first = hn::And(a_ends, hn::Or(hn::Not(second), hn::Le(after, zero)));
     const Mask begins_second = hn::And(b_begins, hn::Or(hn::Not(first), hn::Ge(before, zero)));
     const Number none = set(PredictionLanes::kNone);
-    Number kind = pick(hn::Xor(first_within, within(roots.second)), number(Prediction::Kind::seam),
-                       set(PredictionLanes::kSearch));
+    Number kind = pick(one_seam, number(Prediction::Kind::seam), set(PredictionLanes::kSearch));
     kind = pick(hn::Or(hn::Ge(before, zero), hn::Le(after, zero)), none, kind);
     kind = pick(both, kind, none);
     kind = pick(ends_first, number(Prediction::Kind::first_limb), kind);
@@ -208,9 +201,12 @@ HWY_INLINE void predict(const Viewpoint& viewpoint, const EdgeLanes& edges, int 
     Number at = pick(ends_first, end, seam_at);
     at = pick(begins_second, begin, at);
     at = pick(gap, hn::Mul(half, hn::Add(end, begin)), at);
-    Number t = pick(ends_first, a_end_t, entry_t(a, ray_at(ray_0, step, at)));
-    t = pick(begins_second, b_begin_t, t);
-    t = pick(gap, hn::Min(a_t, b_t_1), t);
+    const Ray ray_there = ray_at(ray_0, step, at);
+    const Passage a_there = pass(a, ray_there);
+    Number t = pick(ends_first, a_end.nearest, entry(a_there));
+    t = pick(begins_second, b_begin.nearest, t);
+    t = pick(gap, hn::Min(a_there.nearest, pass(b, ray_there).nearest), t);
+    t = hn::Div(t, length(ray_there.direction));
     const Number smaller = pick(both, hn::Min(a.radius, b.radius), hn::Max(a.radius, b.radius));
     const Vector across = step.origin + step.direction * hn::Div(t, length_0);
     store(at, i, predictions.at);
