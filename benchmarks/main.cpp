@@ -282,11 +282,11 @@ int run_sessions(const std::vector<std::string>& files, int side, int rounds,
     return 0;
 }
 
-int compare_tracers(const std::vector<std::string>& files, int side, int rounds) {
+int compare_tracers(const std::vector<std::string>& files, const TracerPlan& plan) {
     fmt::print("{:<58}{:<13}{:>11}{:>11}{:>9}{:>11}\n", "scene", "frame", "screen ms", "Embree ms",
                "ratio", "2 threads");
     try {
-        measure_tracers(files, side, rounds, [](const TracerRow& row) {
+        measure_tracers(files, plan, [](const TracerRow& row) {
             fmt::print("{:<58}{:<13}{:>11.2f}{:>11.2f}{:>9.2f}{:>9.2f} x\n", row.scene, row.what,
                        row.screen_ms, row.embree_ms, row.ratio, row.threads_ratio);
             std::fflush(stdout);
@@ -315,7 +315,8 @@ int main(int argc, char** argv) {
     app.add_option("--rounds", plan.rounds, "Rounds to take the median of [7]");
     app.add_option("--threads", plan.threads, "Threads to compare with one [2]");
     app.add_option("--only", plan.only,
-                   "Only rows of these names, as 'edges, 2 px'; of --readers, as vtp");
+                   "Only rows of these names, as 'edges, 2 px'; of --readers, as vtp; of "
+                   "--tracers, as million");
     app.add_flag("--phases", with_phases, "Where the time of the fastest frame of each row goes");
     app.add_flag("!--no-stencils", plan.stencils, "Only frames of method edges");
     app.add_flag("!--no-built-in", built_in, "Only the files");
@@ -330,7 +331,9 @@ int main(int argc, char** argv) {
     app.add_flag("--tracers", tracers,
                  "Measure instead the same frames with and without Embree for camera rays");
     CLI11_PARSE(app, argc, argv);
-    if (tracers) return compare_tracers(files, plan.side, plan.rounds);
+    if (tracers) {
+        return compare_tracers(files, {plan.side, plan.rounds, built_in, plan.only});
+    }
     if (readers_mb > 0.0) {
         for (const ReaderRow& row : measure_readers(readers_mb, plan.only)) {
             fmt::print("{:<10}{:>8.1f} MB{:>9.0f} MB/s\n", row.format, row.megabytes,

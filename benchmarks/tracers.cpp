@@ -114,35 +114,52 @@ std::vector<NamedScene> read_file_in_all_ways(const std::string& file) {
     return scenes;
 }
 
+/// A scene that is made when it is measured: some are large.
+struct BuiltIn {
+    std::string name;
+    std::function<NamedScene()> make;
+    double fov_deg = 0.0;  ///< from where the scene, a unit cube, is seen small; 0: as usual
+};
+
+std::vector<BuiltIn> built_ins() {
+    const auto million = [] { return random_spheres(1'000'000); };
+    return {{"mixed shapes", mixed_shapes},
+            {"boxes", [] { return random_boxes(100'000); }},
+            {"bumpy sphere, 6", [] { return bumpy_sphere(6); }},
+            {"bumpy sphere, 8", [] { return bumpy_sphere(8); }},
+            {"million", million},
+            {"million, small", million, 120.0},
+            {"million, tiny", million, 170.0},
+            {"ten million", [] { return random_spheres(10'000'000); }}};
+}
+
+Settings seen_from_afar(Settings settings, double fov_deg) {
+    settings.view.eye = Vec3d{1.5, 1.3, 2.5};
+    settings.view.look_at = Vec3d{0.5, 0.5, 0.5};
+    settings.view.fov_deg = fov_deg;
+    return settings;
+}
+
 }  // namespace
 
-void measure_tracers(const std::vector<std::string>& files, int side, int rounds,
+void measure_tracers(const std::vector<std::string>& files, const TracerPlan& plan,
                      const std::function<void(const TracerRow&)>& done) {
     Settings base;
-    base.size = {side, side};
+    base.size = {plan.side, plan.side};
+    base.shading.ambient = 0.0F;  // look plain
     for (const std::string& file : files) {
         for (NamedScene& scene : read_file_in_all_ways(file)) {
-            measure(scene.name, std::move(scene.objects), base, rounds, done);
+            measure(scene.name, std::move(scene.objects), base, plan.rounds, done);
         }
     }
-    for (NamedScene& scene : std::vector<NamedScene>{mixed_shapes(), random_boxes(100'000),
-                                                     bumpy_sphere(6), bumpy_sphere(8)}) {
-        measure(scene.name, std::move(scene.objects), base, rounds, done);
-    }
-    for (const double fov : {0.0, 120.0, 170.0}) {
-        NamedScene scene = random_spheres(1'000'000);
-        Settings seen = base;
-        if (fov > 0.0) {
-            // The scene is a unit cube.
-            seen.view.eye = Vec3d{1.5, 1.3, 2.5};
-            seen.view.look_at = Vec3d{0.5, 0.5, 0.5};
-            seen.view.fov_deg = fov;
-            scene.name += fov < 150.0 ? ", small" : ", tiny";
+    for (const BuiltIn& scene : built_ins()) {
+        if (!plan.built_in) break;
+        if (!plan.only.empty() && std::ranges::find(plan.only, scene.name) == plan.only.end()) {
+            continue;
         }
-        measure(scene.name, std::move(scene.objects), seen, rounds, done);
+        const Settings seen = scene.fov_deg > 0.0 ? seen_from_afar(base, scene.fov_deg) : base;
+        measure(scene.name, scene.make().objects, seen, plan.rounds, done);
     }
-    NamedScene many = random_spheres(10'000'000);
-    measure(many.name, std::move(many.objects), base, rounds, done);
 }
 
 }  // namespace ink::bench

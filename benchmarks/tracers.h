@@ -14,9 +14,15 @@ struct TracerRow {
     double threads_ratio;         ///< by the screen on one thread / on two
 };
 
-/// Measures scenes of all kinds, from near and from afar, and files: molecules also as balls and
-/// sticks and as sticks, particles also as boxes. Calls `done` after each row. Throws InputError.
-void measure_tracers(const std::vector<std::string>& files, int side, int rounds,
+struct TracerPlan {
+    int side, rounds;
+    bool built_in;                  ///< measure scenes of all kinds, from near and from afar
+    std::vector<std::string> only;  ///< of these the ones with these names; empty: all
+};
+
+/// Measures files (molecules also as balls and sticks and as sticks, particles also as boxes), then
+/// built-in scenes. Calls `done` after each row. Throws InputError.
+void measure_tracers(const std::vector<std::string>& files, const TracerPlan& plan,
                      const std::function<void(const TracerRow&)>& done);
 
 }  // namespace ink::bench

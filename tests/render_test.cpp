@@ -463,6 +463,25 @@ TEST(AutomaticView, LooksAlongNoRowOfABlockOfParticlesButStraightAtASheet) {
     EXPECT_NEAR(std::abs(back_of(1).z), 1.0F, 1e-5F);
 }
 
+TEST(AutomaticView, SeesCopiesAsTheSpheresThatTheyStandFor) {
+    const Object copied = random_copies(5, 40, 0).front();
+    const auto& spheres = std::get<Spheres>(copied.shape);
+    std::vector<Sphere> all;
+    for (std::size_t i = 0; i < spheres.count(); ++i) all.push_back(spheres.at(i));
+    const Scene few({copied});
+    const Scene many({sphere_object(all)});
+    ViewSettings view;
+    view.view = View::automatic;
+    const Camera a(few, view, {300, 200});
+    const Camera b(many, view, {300, 200});
+    EXPECT_LT(length(a.back() - b.back()), 1e-6F);
+    EXPECT_LT(length(a.right() - b.right()), 1e-6F);
+    EXPECT_LT(
+        length(few.frame().from_world(a.world_eye()) - many.frame().from_world(b.world_eye())),
+        1e-5F);
+    EXPECT_GT(std::abs(a.back().x) + std::abs(a.back().y), 0.1F) << "not the file's axes";
+}
+
 TEST(Camera, RefusesAnEyeAtItsOwnTarget) {
     const Scene scene({sphere_object({{{0, 0, 0}, 1}})});
     ViewSettings view;

@@ -3,9 +3,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
+#include <span>
 #include <variant>
 #include <vector>
 
+#include "base/lanes.h"
+#include "base/multiversion.h"
 #include "base/parallel.h"
 
 namespace ink {
@@ -19,65 +23,156 @@ std::size_t centre_count(const Shape& shape) {
     return std::holds_alternative<Mesh>(shape) ? 0 : primitive_count(shape);
 }
 
-Vec3d centre(const Spheres& shape, std::size_t i) { return to_double(shape.at(i).centre); }
-Vec3d centre(const Glyphs& shape, std::size_t i) { return to_double(shape.at(i).origin); }
+/// Of a stored one, before it is copied.
+Vec3d centre(const Spheres& shape, std::size_t i) { return to_double(shape.spheres[i].centre); }
+Vec3d centre(const Glyphs& shape, std::size_t i) { return to_double(shape.placements[i].origin); }
 Vec3d centre(const Hexahedra& shape, std::size_t i) {
     return to_double(hexahedron_bounds(shape.corners[i]).centre());
 }
-Vec3d centre(const Mesh& /*shape*/, std::size_t /*i*/) { return {}; }
 
-/// Sum of `term(p)` over all centres. Chunks are summed in their order, so that the sum does not
-/// depend on threads.
-template <class Sum, class Term>
-Sum sum_over_centres(const Scene& scene, const Term& term) {
-    constexpr std::size_t kChunk = 1 << 15;
-    Sum total{};
-    for (const Object& object : scene.objects()) {
-        const std::size_t count = centre_count(object.shape);
-        std::vector<Sum> sums((count + kChunk - 1) / kChunk);
-        std::visit(
-            [&](const auto& shape) {
-                parallel_ranges(sums.size(), 1, [&](std::size_t begin, std::size_t end) {
-                    for (std::size_t i = begin * kChunk; i < std::min(end * kChunk, count); ++i) {
-                        sums[i / kChunk] += term(centre(shape, i));
-                    }
-                });
-            },
-            object.shape);
-        for (const Sum& sum : sums) total += sum;
+/// Sums over points: their number, and of where they lie from some point the coordinates and their
+/// products, the upper triangle of a symmetric matrix row by row.
+struct Moments {
+    double count = 0.0;
+    Vec3d sum;
+    std::array<double, 6> products{};
+
+    Moments& operator+=(const Moments& other) {
+        count += other.count;
+        sum = sum + other.sum;
+        for (std::size_t k = 0; k < products.size(); ++k) products[k] += other.products[k];
+        return *this;
     }
+
+    Matrix matrix() const {
+        const auto& p = products;
+        return {{{p[0], p[1], p[2]}, {p[1], p[3], p[4]}, {p[2], p[4], p[5]}}};
+    }
+    Matrix covariance() const {
+        Matrix m = matrix();
+        const std::array<double, 3> s{sum.x, sum.y, sum.z};
+        for (std::size_t i = 0; i < 3; ++i) {
+            for (std::size_t j = 0; j < 3; ++j) m[i][j] -= s[i] * s[j] / std::max(count, 1.0);
+        }
+        return m;
+    }
+};
+
+struct PointLanes {
+    Lanes<double> x{}, y{}, z{};
+};
+
+/// Sixteen sums of each kind: lane i is of every sixteenth point, whatever the processor has.
+INKTRACE_MULTIVERSION
+void add(const PointLanes& p, std::array<Lanes<double>, 9>& sums) {
+    for (int i = 0; i < kLanes; ++i) sums[0][i] += p.x[i];
+    for (int i = 0; i < kLanes; ++i) sums[1][i] += p.y[i];
+    for (int i = 0; i < kLanes; ++i) sums[2][i] += p.z[i];
+    for (int i = 0; i < kLanes; ++i) sums[3][i] += p.x[i] * p.x[i];
+    for (int i = 0; i < kLanes; ++i) sums[4][i] += p.x[i] * p.y[i];
+    for (int i = 0; i < kLanes; ++i) sums[5][i] += p.x[i] * p.z[i];
+    for (int i = 0; i < kLanes; ++i) sums[6][i] += p.y[i] * p.y[i];
+    for (int i = 0; i < kLanes; ++i) sums[7][i] += p.y[i] * p.z[i];
+    for (int i = 0; i < kLanes; ++i) sums[8][i] += p.z[i] * p.z[i];
+}
+
+/// Of points `first` to `end` about a point.
+template <class Centre>
+Moments moments_of_range(const Centre& centre, std::size_t first, std::size_t end, Vec3d about) {
+    std::array<Lanes<double>, 9> sums{};
+    for (std::size_t k = first; k < end; k += kLanes) {
+        PointLanes points;
+        const int used = static_cast<int>(std::min<std::size_t>(kLanes, end - k));
+        for (int i = 0; i < used; ++i) {
+            const Vec3d d = centre(k + static_cast<std::size_t>(i)) - about;
+            points.x[i] = d.x;
+            points.y[i] = d.y;
+            points.z[i] = d.z;
+        }
+        add(points, sums);
+    }
+    std::array<double, 9> total{};
+    for (std::size_t n = 0; n < total.size(); ++n) {
+        for (const double lane : sums[n]) total[n] += lane;
+    }
+    return {static_cast<double>(end - first),
+            {total[0], total[1], total[2]},
+            {total[3], total[4], total[5], total[6], total[7], total[8]}};
+}
+
+/// Chunks are summed in their order, so that the sum does not depend on threads.
+template <class Centre>
+Moments moments_of(const Centre& centre, std::size_t count, Vec3d about) {
+    constexpr std::size_t kChunk = 1 << 15;
+    std::vector<Moments> sums((count + kChunk - 1) / kChunk);
+    parallel_ranges(sums.size(), 1, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t k = begin; k < end; ++k) {
+            sums[k] =
+                moments_of_range(centre, k * kChunk, std::min((k + 1) * kChunk, count), about);
+        }
+    });
+    Moments total;
+    for (const Moments& sum : sums) total += sum;
     return total;
 }
 
-struct Mean {
-    Vec3d sum;
-    double count = 0.0;
-
-    Mean& operator+=(const Mean& other) {
-        sum = sum + other.sum;
-        count += other.count;
-        return *this;
+/// Of points that are moved: `shift` is where the point goes that they are about, from what they
+/// are to be about then.
+Moments moved(const Moments& of, const Motion& motion, Vec3d shift) {
+    const Matrix m = of.matrix();
+    const Vec3d turned = motion.turn(of.sum);
+    const std::array<double, 3> s{turned.x, turned.y, turned.z};
+    const std::array<double, 3> v{shift.x, shift.y, shift.z};
+    const auto r = [&](std::size_t row, std::size_t column) {
+        return motion.rotation[3 * row + column];
+    };
+    Moments result{of.count, turned + shift * of.count};
+    std::size_t n = 0;
+    for (std::size_t i = 0; i < 3; ++i) {
+        for (std::size_t j = i; j < 3; ++j) {
+            double& product = result.products[n++];
+            product = s[i] * v[j] + v[i] * s[j] + of.count * v[i] * v[j];
+            for (std::size_t a = 0; a < 9; ++a)
+                product += r(i, a / 3) * m[a / 3][a % 3] * r(j, a % 3);
+        }
     }
-};
+    return result;
+}
 
-/// Upper triangle of a symmetric matrix, row by row.
-struct Moments {
-    std::array<double, 6> m{};
-
-    Moments& operator+=(const Moments& other) {
-        for (std::size_t k = 0; k < m.size(); ++k) m[k] += other.m[k];
-        return *this;
+/// Adds those of a shape; the first one of all says what they are about, so that points which
+/// coincide have no spread at all.
+template <class S>
+void add_moments(const S& shape, std::span<const Copy> copies, std::size_t stored,
+                 std::optional<Vec3d>& about, Moments& sum) {
+    const Vec3d first = centre(shape, 0);
+    const auto all_of = [&](Vec3d point) {
+        return moments_of([&](std::size_t i) { return centre(shape, i); }, stored, point);
+    };
+    if (!about) about = copies.empty() ? first : copies[0].motion(first);
+    if (copies.empty()) {
+        sum += all_of(*about);
+        return;
     }
-};
+    const Moments one = all_of(first);
+    for (const Copy& copy : copies) {
+        sum += moved(one, copy.motion, copy.motion(first) - *about);
+    }
+}
 
 Matrix covariance(const Scene& scene) {
-    const auto all = sum_over_centres<Mean>(scene, [](Vec3d p) { return Mean{p, 1.0}; });
-    const Vec3d mean = all.sum / std::max(all.count, 1.0);
-    const auto [m] = sum_over_centres<Moments>(scene, [&](Vec3d p) {
-        const Vec3d d = p - mean;
-        return Moments{{d.x * d.x, d.x * d.y, d.x * d.z, d.y * d.y, d.y * d.z, d.z * d.z}};
-    });
-    return {{{m[0], m[1], m[2]}, {m[1], m[3], m[4]}, {m[2], m[4], m[5]}}};
+    Moments sum;
+    std::optional<Vec3d> about;
+    for (const Object& object : scene.objects()) {
+        if (centre_count(object.shape) == 0) continue;
+        if (const auto* solids = std::get_if<Hexahedra>(&object.shape)) {
+            add_moments(*solids, {}, solids->corners.size(), about, sum);
+        } else if (const auto* spheres = std::get_if<Spheres>(&object.shape)) {
+            add_moments(*spheres, spheres->copies, spheres->spheres.size(), about, sum);
+        } else if (const auto* glyphs = std::get_if<Glyphs>(&object.shape)) {
+            add_moments(*glyphs, glyphs->copies, glyphs->placements.size(), about, sum);
+        }
+    }
+    return sum.covariance();
 }
 
 /// Cyclic Jacobi rotations (Golub and Van Loan, Matrix Computations, 8.5): leaves the eigenvalues

@@ -51,7 +51,15 @@ std::array<double, 4> supports(const Scene& scene, const std::array<Vec3f, 4>& n
         const std::scoped_lock lock(mutex);
         for (std::size_t k = 0; k < 4; ++k) least[k] = std::min<double>(least[k], part[k]);
     };
-    const auto reduce_balls = [&](std::size_t count, const auto& ball) {
+    const auto reduce_balls = [&](std::size_t count, const Motion& motion, const auto& ball) {
+        // Instead of balls, the directions are turned.
+        std::array<Vec3f, 4> turned;
+        std::array<float, 4> shifts;
+        for (std::size_t k = 0; k < 4; ++k) {
+            const Vec3d n = to_double(normals[k]);
+            turned[k] = to_float(motion.turn_back(n));
+            shifts[k] = static_cast<float>(dot(n, motion.shift));
+        }
         parallel_ranges(count, kGrain, [&](std::size_t begin, std::size_t end) {
             std::array<Lanes<float>, 4> lanes;
             for (Lanes<float>& lane : lanes) lane.fill(kInfinity);
@@ -61,19 +69,26 @@ std::array<double, 4> supports(const Scene& scene, const std::array<Vec3f, 4>& n
                     // Unused lanes repeat the last one.
                     balls.put(i, ball(std::min(first + static_cast<std::size_t>(i), end - 1)));
                 }
-                reach(balls, normals, lanes);
+                reach(balls, turned, lanes);
             }
             std::array<float, 4> part{};
-            for (std::size_t k = 0; k < 4; ++k) part[k] = *std::ranges::min_element(lanes[k]);
+            for (std::size_t k = 0; k < 4; ++k) {
+                part[k] = *std::ranges::min_element(lanes[k]) + shifts[k];
+            }
             add(part);
         });
     };
     const auto reduce_points = [&](std::size_t count, const auto& point) {
-        reduce_balls(count, [&](std::size_t i) { return Sphere{point(i), 0.0F}; });
+        reduce_balls(count, Motion{}, [&](std::size_t i) { return Sphere{point(i), 0.0F}; });
     };
     for (const Object& object : scene.objects()) {
         if (const auto* shape = std::get_if<Spheres>(&object.shape)) {
-            reduce_balls(shape->count(), [&](std::size_t i) { return shape->at(i); });
+            const auto reduce = [&](const Motion& motion) {
+                reduce_balls(shape->spheres.size(), motion,
+                             [&](std::size_t i) { return shape->spheres[i]; });
+            };
+            if (shape->copies.empty()) reduce({});
+            for (const Copy& copy : shape->copies) reduce(copy.motion);
         } else if (const auto* mesh = std::get_if<Mesh>(&object.shape)) {
             reduce_points(mesh->vertices.size(), [&](std::size_t i) { return mesh->vertices[i]; });
         } else if (const auto* glyphs = std::get_if<Glyphs>(&object.shape)) {

@@ -18,13 +18,13 @@ struct Motion {
     }
     Vec3d operator()(Vec3d p) const { return turn(p) + shift; }
     Vec3f operator()(Vec3f p) const { return to_float((*this)(to_double(p))); }
-    /// Where `p` comes from.
-    Vec3d back(Vec3d p) const {
+    Vec3d turn_back(Vec3d v) const {
         const auto& m = rotation;
-        const Vec3d v = p - shift;
         return {m[0] * v.x + m[3] * v.y + m[6] * v.z, m[1] * v.x + m[4] * v.y + m[7] * v.z,
                 m[2] * v.x + m[5] * v.y + m[8] * v.z};
     }
+    /// Where `p` comes from.
+    Vec3d back(Vec3d p) const { return turn_back(p - shift); }
     friend bool operator==(const Motion&, const Motion&) = default;
 };
 
