@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "lines/chain.h"
+#include "lines/chain_lines.h"
 #include "lines/corners.h"
 #include "lines/fit.h"
 #include "lines/fit_chains.h"
@@ -254,6 +255,71 @@ TEST(Junctions, MoveToWhereTheirLinesPoint) {
         if (junction == Vec2f{}) junction = end;
         EXPECT_EQ(end, junction);
     }
+}
+
+/// A line from left to right between geometry 1 and, below it, 2, 3 and 4 in turn: lines between
+/// these end on it at two places.
+std::vector<Segment> two_tees(float first, float second) {
+    std::vector<Segment> segments;
+    const auto below = [&](float x) -> GeometryId { return x < first ? 2 : x < second ? 3 : 4; };
+    for (int k = 0; k < 20; ++k) {
+        const float x = 0.5F + static_cast<float>(k);
+        std::vector<float> ends{x};
+        for (const float cut : {first, second}) {
+            if (cut > x && cut < x + 1) ends.push_back(cut);
+        }
+        ends.push_back(x + 1);
+        for (std::size_t n = 0; n + 1 < ends.size(); ++n) {
+            const GeometryId id = below(0.5F * (ends[n] + ends[n + 1]));
+            segments.push_back(segment({ends[n], 1}, {ends[n + 1], 1}, 1, id));
+        }
+    }
+    GeometryId id = 2;
+    for (const float x : {first, second}) {
+        for (int k = 0; k < 8; ++k) {
+            const float y = k == 0 ? 1.0F : 0.5F + static_cast<float>(k);
+            const float next = 1.5F + static_cast<float>(k);
+            segments.push_back(segment({x, next}, {x, y}, id, id + 1));
+            if (k == 0) segments.back().spans_cell = false;
+        }
+        ++id;
+    }
+    return segments;
+}
+
+TEST(NearJunctions, AreOneWithinAPixelOfEachOther) {
+    const ChainGraph apart = chain_lines(two_tees(8.2F, 11.1F), 1.0F, 1);
+    EXPECT_EQ(apart.chains.size(), 5U);
+    const ChainGraph graph = chain_lines(two_tees(8.2F, 8.9F), 1.0F, 1);
+    ASSERT_EQ(graph.chains.size(), 4U);
+    const auto vertex_near = [](const Chain& chain) {
+        const bool first = length(chain.points.front() - Vec2f{8.55F, 1}) < 1.0F;
+        return first ? std::pair(chain.first_vertex, chain.points.front())
+                     : std::pair(chain.last_vertex, chain.points.back());
+    };
+    for (const Chain& chain : graph.chains) {
+        EXPECT_EQ(vertex_near(chain), vertex_near(graph.chains[0]));
+        EXPECT_NEAR(static_cast<double>(vertex_near(chain).second.y), 1.0, 0.01);
+    }
+    // The line that goes through is one path still, and straight.
+    EXPECT_EQ(graph.paths.size(), 3U);
+}
+
+TEST(NearJunctions, CloseWhatIsSeenThroughAHoleOfHalfAPixel) {
+    std::vector<Segment> segments;
+    for (int k = 0; k < 12; ++k) {
+        const float x = 0.5F + static_cast<float>(k);
+        if (k != 5) segments.push_back(segment({x, 1}, {x + 1, 1}, 1, 2));
+    }
+    segments.push_back(segment({5.5F, 1}, {5.7F, 1}, 1, 2));
+    segments.push_back(segment({5.7F, 1}, {6.0F, 0.9F}, 1, 3));
+    segments.push_back(segment({6.0F, 0.9F}, {6.2F, 1}, 1, 3));
+    segments.push_back(segment({5.7F, 1}, {6.2F, 1}, 3, 2));
+    segments.push_back(segment({6.2F, 1}, {6.5F, 1}, 1, 2));
+    EXPECT_EQ(chain_segments(segments, 1.0F).chains.size(), 4U);
+    const ChainGraph graph = chain_lines(segments, 1.0F, 1);
+    ASSERT_EQ(graph.chains.size(), 1U);
+    EXPECT_NEAR(length_of(graph.chains[0]), 12.0, 0.1);
 }
 
 // Corners

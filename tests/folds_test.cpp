@@ -171,6 +171,31 @@ TEST(CrumbOfAFold, ThatHangsOnAnotherLineIsDroppedIfItIsAStub) {
     EXPECT_GT(folds(1.5F), 2);  // longer than two widths, though not than five
 }
 
+TEST(CrumbOfAFold, ThatHangsOnAnotherLineIsDroppedIfItIsShorterThanWide) {
+    // A few pixels stick out beside the plate.
+    const Surface plate =
+        flat(2, 300.0, [](double x, double y) { return x + 0.3 * (y - kLine) < 20.3; });
+    const World world{{broken_fold(0.1, 18.0, {{10, 25}}), plate}};
+    const auto folds = [&](float width) {
+        Viewpoint viewpoint;
+        viewpoint.dir = {0, 0, -1};
+        viewpoint.parallel = true;
+        viewpoint.origin = {{0, 0, 2}, {world.unit, 0, 0}, {0, -world.unit, 0}};
+        viewpoint.direction = {{0, 0, -1}, {}, {}};
+        const Found found = search(world, 1);
+        const FoldRepairs repairs =
+            mend_folds(found.segments, viewpoint, 1.0F, width,
+                       [&](std::span<const Vec2f> points, std::span<Sample> out) {
+                           std::ranges::transform(points, out.begin(), world);
+                       },
+                       {.crumb_area = 0.0F, .stub_area = 0.0F});
+        return std::ranges::count(found.segments, LineType::self_occlusion, &Segment::type) -
+               static_cast<std::ptrdiff_t>(repairs.crumbs.size());
+    };
+    EXPECT_EQ(folds(6.0F), 0);
+    EXPECT_GT(folds(1.0F), 1);
+}
+
 TEST(BrokenFold, IsMendedAlikeWhateverTheOrderOfItsPiecesAndByAnyNumberOfWorkers) {
     const World world{{broken_fold(0.1, 40.0, {{5, 13}, {20, 31}, {37, 43}})}};
     const Mended mended = mend(world, 2.0F);

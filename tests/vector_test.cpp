@@ -6,6 +6,7 @@
 #include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <random>
 #include <set>
 #include <string>
 #include <vector>
@@ -116,6 +117,39 @@ TEST(LineArt, OfSmoothScenesHardlyChangesWithTheLattice) {
         const LineArt fine = draw(scene, settings).art;
         const double count = static_cast<double>(coarse.chains.size());
         EXPECT_NEAR(static_cast<double>(fine.chains.size()) / count, 1.0, 0.02) << name;
+        EXPECT_NEAR(total_length(fine.chains) / total_length(coarse.chains), 1.0, 0.02) << name;
+    }
+}
+
+TEST(LineArt, OfManySpheresHardlyChangesWithTheLattice) {
+    // Much of what is seen of them is smaller than a pixel: a finer lattice comes upon more of it.
+    std::vector<std::pair<std::string, Scene>> scenes;
+    for (unsigned seed = 0; seed < 4; ++seed) {
+        std::mt19937 random(seed);
+        const auto uniform = [&](float from, float to) {
+            return from + (to - from) * static_cast<float>(random() >> 8U) * 0x1p-24F;
+        };
+        std::vector<Sphere> spheres;
+        for (int k = 0; k < 150; ++k) {
+            const float x = uniform(-5, 5);
+            const float y = uniform(-5, 5);
+            const float z = uniform(-5, 5);
+            spheres.push_back({{x, y, z}, uniform(0.4F, 1.0F)});
+        }
+        scenes.emplace_back("seed " + std::to_string(seed), Scene({sphere_object(spheres)}));
+    }
+    if (auto haemoglobin = shared_scene("molecules/4hhb.pdb")) {
+        scenes.emplace_back("4hhb", std::move(*haemoglobin));
+    }
+    for (const auto& [name, scene] : scenes) {
+        Settings settings = picture(name == "4hhb" ? 1024 : 512);
+        settings.fill = Fill::none;
+        const LineArt coarse = draw(scene, settings).art;
+        settings.lattice = 3;
+        const LineArt fine = draw(scene, settings).art;
+        const auto count = static_cast<double>(coarse.chains.size());
+        EXPECT_NEAR(static_cast<double>(fine.chains.size()) / count, 1.0, 0.02)
+            << name << ": " << coarse.chains.size() << " and " << fine.chains.size();
         EXPECT_NEAR(total_length(fine.chains) / total_length(coarse.chains), 1.0, 0.02) << name;
     }
 }

@@ -1,9 +1,7 @@
 #include "lines/chain.h"
 
-#include <array>
 #include <utility>
 
-#include "lines/segment_graph.h"
 #include "lines/steady_types.h"
 
 namespace ink {
@@ -17,10 +15,10 @@ class Chainer {
   public:
     explicit Chainer(const SegmentGraph& graph) : graph_(graph) {}
 
-    ChainGraph run() {
+    ChainedWays run() {
         make_chains();
         make_paths();
-        return std::move(result_);
+        return {std::move(result_), std::move(chain_ways_)};
     }
 
   private:
@@ -133,8 +131,10 @@ void Chainer::make_paths() {
 ChainGraph chain_segments(std::span<const Segment> segments, float spacing) {
     SegmentGraph graph(segments, spacing);
     steady_types(graph);
-    return Chainer(graph).run();
+    return chain_ways(graph).graph;
 }
+
+ChainedWays chain_ways(const SegmentGraph& graph) { return Chainer(graph).run(); }
 
 double length_of(const Chain& chain) {
     double total = 0.0;

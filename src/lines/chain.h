@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -7,6 +8,7 @@
 #include "base/vec.h"
 #include "lines/line_type.h"
 #include "lines/segment.h"
+#include "lines/segment_graph.h"
 #include "scene/ids.h"
 
 namespace ink {
@@ -59,6 +61,13 @@ struct ChainGraph {
 /// lies on another segment of its cell. `spacing` is the lattice's, in pixels. The result does not
 /// depend on the order of the segments, and so not on how the picture was cut into tiles.
 ChainGraph chain_segments(std::span<const Segment> segments, float spacing);
+
+/// Chains, and the first and the last way of each: they follow each other by next_of_type.
+struct ChainedWays {
+    ChainGraph graph;
+    std::vector<std::array<Way, 2>> ways;
+};
+ChainedWays chain_ways(const SegmentGraph& graph);
 
 /// Length of the polyline, pixels.
 double length_of(const Chain& chain);

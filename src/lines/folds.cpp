@@ -140,15 +140,18 @@ class FoldMender {
     void find_loose_ends() {
         attached_.assign(lines_.size(), 0);
         for (std::size_t n = 0; n < incidences_.size(); ++n) {
-            const bool shared =
+            const bool goes_on =
                 (n > 0 && incidences_[n - 1].key == incidences_[n].key) ||
                 (n + 1 < incidences_.size() && incidences_[n + 1].key == incidences_[n].key);
-            if (shared) continue;
+            if (goes_on) continue;
             const auto [key, fold, at_b] = incidences_[n];
             const Vec2f point{std::get<1>(key), std::get<0>(key)};
-            if (line_near(point, pieces_[fold]) != kNone) {
+            const std::uint32_t near = line_near(point, pieces_[fold]);
+            if (near != kNone) {
                 attached_[root(fold)] = 1;
                 tails_.push_back({fold, at_b});
+                const bool shared = point == lines_[near].a || point == lines_[near].b;
+                if (!shared && (!at_b || lines_[fold].spans_cell)) stubs_.push_back(fold);
                 continue;
             }
             ends_.push_back({point, unit(point - back_from(fold, at_b)), fold, at_b});
@@ -475,6 +478,8 @@ class FoldMender {
         }
         std::vector<std::uint8_t> loose(lines_.size());
         for (const LooseEnd& end : ends_) loose[root(end.fold)] = 1;
+        std::vector<std::uint8_t> stub(lines_.size());
+        for (const std::uint32_t k : stubs_) stub[root(k)] = 1;
         const auto is_short = [&](std::uint32_t k) {
             const std::uint32_t group = root(k);
             return loose[group] != 0 && lengths[group] < settings_.longest_crumb * width_;
@@ -482,8 +487,11 @@ class FoldMender {
         const std::vector<float> depths = depths_of(is_short);
         const auto is_crumb = [&](std::uint32_t k) {
             const std::uint32_t group = root(k);
-            const float most = attached_[group] != 0 ? settings_.stub_area : settings_.crumb_area;
-            return is_short(k) && lengths[group] * depths[group] < most * width_ * width_;
+            const bool attached = attached_[group] != 0;
+            const float most = attached ? settings_.stub_area : settings_.crumb_area;
+            const bool bump = attached && lengths[group] < settings_.shortest_stub * width_;
+            return (bump && (loose[group] != 0 || stub[group] != 0)) ||
+                   (is_short(k) && lengths[group] * depths[group] < most * width_ * width_);
         };
         for (const std::uint32_t k : folds_) {
             if (is_crumb(k)) repairs_.crumbs.push_back(k);
@@ -586,6 +594,8 @@ class FoldMender {
     std::vector<std::uint8_t> attached_;  ///< a group: it meets another line
     std::optional<SegmentSquares> squares_;
     std::vector<LooseEnd> ends_;
+    /// Folds that end on a cell's side, where nothing goes on, near another line.
+    std::vector<std::uint32_t> stubs_;
     /// Ends of folds, by their segments, that may double another one.
     std::vector<FoldTail> tails_;
     FoldRepairs repairs_;

@@ -25,7 +25,17 @@ Vec2f point_from(const Chain& chain, bool last, std::size_t k) {
     return chain.points[last ? chain.points.size() - 1 - k : k];
 }
 
-/// The line as it would go on to the junction, from the few points before it.
+/// Kept in the lattice cell on whose sides the lines enter it.
+Vec2d keep_in_cell(Vec2d point, Vec2d inside, double spacing) {
+    const auto keep = [&](double x, double in) {
+        const double lower = (std::floor(in / spacing - 0.5) + 0.5) * spacing;
+        return std::clamp(x, lower, lower + spacing);
+    };
+    return {keep(point.x, inside.x), keep(point.y, inside.y)};
+}
+
+}  // namespace
+
 std::optional<Parabola> approach(const Chain& chain, bool last) {
     constexpr std::size_t kPoints = 5;
     std::array<LinePoint, kPoints> points;
@@ -42,9 +52,8 @@ std::optional<Parabola> approach(const Chain& chain, bool last) {
                                                                       : std::nullopt;
 }
 
-/// Nearest to the lines in the least-squares sense, starting from `start`.
 Vec2d meeting_point(std::span<const Parabola> lines, Vec2d start) {
-    constexpr double kPull = 0.02;  // of the start, for lines that leave a direction open
+    constexpr double kPull = 0.02;  // of the start
     double xx = kPull;
     double xy = 0.0;
     double yy = kPull;
@@ -61,17 +70,6 @@ Vec2d meeting_point(std::span<const Parabola> lines, Vec2d start) {
     const double determinant = xx * yy - xy * xy;
     return {(sum.x * yy - sum.y * xy) / determinant, (sum.y * xx - sum.x * xy) / determinant};
 }
-
-/// Kept in the lattice cell on whose sides the lines enter it.
-Vec2d keep_in_cell(Vec2d point, Vec2d inside, double spacing) {
-    const auto keep = [&](double x, double in) {
-        const double lower = (std::floor(in / spacing - 0.5) + 0.5) * spacing;
-        return std::clamp(x, lower, lower + spacing);
-    };
-    return {keep(point.x, inside.x), keep(point.y, inside.y)};
-}
-
-}  // namespace
 
 void place_junctions(ChainGraph& graph, float spacing) {
     std::vector<ChainEnd> ends;

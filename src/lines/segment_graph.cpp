@@ -143,6 +143,7 @@ void SegmentGraph::split_at_ends_within(float spacing) {
 
 void SegmentGraph::number_ends() {
     VertexTable table(2 * segments_.size());
+    ends_.clear();
     ends_.reserve(2 * segments_.size());
     for (const Segment& segment : segments_) {
         ends_.push_back(table.number(segment.a));
@@ -154,6 +155,24 @@ void SegmentGraph::number_ends() {
     leaving_.resize(ends_.size());
     std::vector<std::uint32_t> next(first_leaving_.begin(), first_leaving_.end() - 1);
     for (Way way = 0; way < ends_.size(); ++way) leaving_[next[ends_[way]]++] = way;
+}
+
+std::vector<Vec2f> SegmentGraph::places() const {
+    std::vector<Vec2f> places(first_leaving_.size() - 1);
+    for (Way way = 0; way < ends_.size(); ++way) places[ends_[way]] = start_point(way);
+    return places;
+}
+
+void SegmentGraph::reshape(std::span<const Vec2f> places, std::span<const std::uint8_t> marked) {
+    std::size_t kept = 0;
+    for (std::size_t k = 0; k < segments_.size(); ++k) {
+        Segment segment = segments_[k];
+        segment.a = places[ends_[2 * k]];
+        segment.b = places[ends_[2 * k + 1]];
+        if (marked[k] == 0 && segment.a != segment.b) segments_[kept++] = segment;
+    }
+    segments_.resize(kept);
+    number_ends();
 }
 
 Way SegmentGraph::only_next(Way way) const {

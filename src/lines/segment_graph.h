@@ -48,6 +48,11 @@ class SegmentGraph {
     Way next_for_the_eye(Way way) const;
 
     void set_type(Way way, LineType type) { segments_[way >> 1U].type = type; }
+    /// Moves every vertex to its place and takes out segments that are marked or have no length.
+    /// Vertices at one place become one; all are numbered anew.
+    void reshape(std::span<const Vec2f> places, std::span<const std::uint8_t> marked);
+    /// Where each vertex is.
+    std::vector<Vec2f> places() const;
 
   private:
     void sort(float spacing);

@@ -22,6 +22,23 @@ struct Stretch {
     float length;
 };
 
+/// The type changes somewhere along a piece whose ends differ: half of it goes to the neighbour, so
+/// that lengths hang on the lattice by as little as can be.
+void share_pieces_between(const SegmentGraph& graph, std::span<const Way> run,
+                          std::vector<Stretch>& stretches) {
+    for (std::size_t k = 0; k + 1 < stretches.size(); ++k) {
+        const auto share = [&](Way way, bool ahead, Stretch& from, Stretch& to) {
+            const Segment& piece = graph.segment(way);
+            if (graph.back(way) == ahead || piece.type_at_b != to.type) return;
+            const float half = 0.5F * length(piece.b - piece.a);
+            from.length -= half;
+            to.length += half;
+        };
+        share(run[stretches[k].end - 1], true, stretches[k], stretches[k + 1]);
+        share(run[stretches[k].end], false, stretches[k + 1], stretches[k]);
+    }
+}
+
 std::vector<Stretch> stretches_of(const SegmentGraph& graph, std::span<const Way> run) {
     std::vector<Stretch> stretches;
     for (std::size_t k = 0; k < run.size(); ++k) {
@@ -32,6 +49,7 @@ std::vector<Stretch> stretches_of(const SegmentGraph& graph, std::span<const Way
         stretches.back().end = k + 1;
         stretches.back().length += length(piece.b - piece.a);
     }
+    share_pieces_between(graph, run, stretches);
     return stretches;
 }
 

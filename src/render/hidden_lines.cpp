@@ -4,10 +4,8 @@
 #include <bit>
 #include <cmath>
 
-#include "lines/chain.h"
-#include "lines/corners.h"
+#include "lines/chain_lines.h"
 #include "lines/dashes.h"
-#include "lines/junctions.h"
 
 namespace ink {
 
@@ -93,9 +91,7 @@ RenderStats HiddenLineFinder::stats() const {
 std::vector<Segment> hidden_strokes(const Edges& edges, std::span<const Segment> lines) {
     const float spacing = 1.0F / static_cast<float>(edges.q);
     const Settings& settings = edges.pipeline.settings;
-    ChainGraph graph = chain_segments(lines, spacing);
-    place_junctions(graph, spacing);
-    split_at_corners(graph, settings.threads);
+    const ChainGraph graph = chain_lines(lines, spacing, settings.threads);
     std::vector<Segment> strokes;
     for (const Chain& chain : graph.chains) {
         const double size = length_of(chain);

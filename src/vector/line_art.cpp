@@ -4,9 +4,8 @@
 #include <iterator>
 #include <utility>
 
-#include "lines/corners.h"
+#include "lines/chain_lines.h"
 #include "lines/fit_chains.h"
-#include "lines/junctions.h"
 #include "sampling/line_ids.h"
 #include "vector/region_colors.h"
 #include "vector/regions.h"
@@ -53,9 +52,7 @@ constexpr double kFitShare = 0.5;
 CurveGraph curves_of(const std::vector<Segment>& segments, float spacing,
                      const Settings& settings) {
     CurveGraph layer;
-    layer.graph = chain_segments(segments, spacing);
-    place_junctions(layer.graph, spacing);
-    split_at_corners(layer.graph, settings.threads);
+    layer.graph = chain_lines(segments, spacing, settings.threads);
     layer.curves = fit_chains(layer.graph, {.tolerance = kFitShare * settings.curve_tolerance_px},
                               settings.threads);
     return layer;
