@@ -1,6 +1,7 @@
 #include "accel/screen_kernels.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <cstring>
@@ -135,6 +136,21 @@ struct SphereTest {
 HWY_INLINE Vector edge_value(const TriangleForm::Edge& edge, Vector qx, Vector qy) {
     return hn::Sub(hn::Mul(set(edge.dx), hn::Sub(qy, set(edge.y))),
                    hn::Mul(set(edge.dy), hn::Sub(qx, set(edge.x))));
+}
+
+/// Number by number: a copy of them all would go through memory, which every test would wait for.
+HWY_INLINE TriangleForm triangle_form(const FormNumbers& n) {
+    return {{{{n[0], n[1], n[2], n[3]}, {n[4], n[5], n[6], n[7]}, {n[8], n[9], n[10], n[11]}}},
+            n[12],
+            n[13],
+            n[14],
+            n[15],
+            n[16],
+            n[17],
+            n[18],
+            n[19],
+            n[20],
+            n[21]};
 }
 
 /// Share of its terms that an edge's value may be rounded by.
@@ -325,7 +341,7 @@ HWY_INLINE void for_kind(const Basis& basis, const ScreenPacket& packet, const R
         case ClusterKind::triangles:
         case ClusterKind::solids:
             return run([](const ScreenPacket& p, int lane) {
-                return TriangleTest{form_of<TriangleForm>(p, lane)};
+                return TriangleTest{triangle_form(p.forms[static_cast<std::size_t>(lane)])};
             });
         case ClusterKind::glyphs: break;
     }
@@ -371,20 +387,34 @@ struct Reach {
           depth(bounds.depth[lane]) {}
 };
 
-/// Groups of cells that bounds reach into.
+/// Groups of cells that one primitive reaches into.
 struct Groups {
     int left, right, top, bottom;
+};
 
-    HWY_INLINE Groups(const Reach& reach, const FrontRaster& raster) {
+/// Those of sixteen primitives.
+struct GroupLanes {
+    Lanes<std::int32_t> left, right, top, bottom;
+
+    HWY_INLINE GroupLanes(const BoundsPacket& bounds, const FrontRaster& raster) {
         const float scale = 1.0F / (kBlockSide * raster.side);
-        const auto group = [&](float at, float from, int count) {
-            const float place = (at - from) * scale;
-            return static_cast<int>(std::min(std::max(place, 0.0F), static_cast<float>(count - 1)));
+        const auto put = [&](const Lanes<float>& at, float from, int count,
+                             Lanes<std::int32_t>& to) {
+            const auto last = set(static_cast<float>(count - 1));
+            for (int i = 0; i < kLanes; i += kStep) {
+                const auto place = hn::Mul(hn::Sub(load(at, i), set(from)), set(scale));
+                const auto within = hn::Min(hn::Max(place, hn::Zero(kFloats)), last);
+                hn::Store(hn::ConvertTo(kIntegers, within), kIntegers, to.data() + i);
+            }
         };
-        left = group(reach.left, raster.left, raster.across);
-        right = group(reach.right, raster.left, raster.across);
-        top = group(reach.top, raster.top, raster.down);
-        bottom = group(reach.bottom, raster.top, raster.down);
+        put(bounds.left, raster.left, raster.across, left);
+        put(bounds.right, raster.left, raster.across, right);
+        put(bounds.top, raster.top, raster.down, top);
+        put(bounds.bottom, raster.top, raster.down, bottom);
+    }
+
+    HWY_INLINE Groups of(int lane) const {
+        return {left[lane], right[lane], top[lane], bottom[lane]};
     }
 };
 
@@ -413,22 +443,49 @@ struct GroupCells {
     }
 };
 
-/// Tests a primitive against the fronts of a group.
-template <class Test>
-HWY_INLINE void test_group(const Test& test, Name name, const Reach& reach,
-                           const FrontRaster& raster, int column, int row) {
-    const int group = row * raster.across + column;
-    for (int i = 0; i < kLanes; i += kStep) {
-        const GroupCells cells(reach, raster, column, row, i);
-        const Mask live = test.may_cover(cells.reached, cells.left, cells.top, raster.side);
-        const LaneBits all = bits(live) << static_cast<unsigned>(i);
-        raster.dirty[group] |= all;
-        for (LaneBits left = all; left != 0; left &= left - 1) {
-            const int cell = group * kLanes + std::countr_zero(left);
-            test(name, raster.fronts[raster.front_at[cell]]);
+/// Primitives of a packet and cells that they may show in. They are listed first, then tested one
+/// after the other: how many cells a primitive reaches cannot be guessed, so that to test them as
+/// they are found would stop the processor at each primitive.
+struct Pairs {
+    static constexpr std::size_t kMost = 1024;
+    std::array<Lanes<std::uint32_t>, kMost / kLanes + 2> list;  ///< cell * kLanes + lane
+    std::size_t count = 0;
+
+    HWY_INLINE bool full() const { return count > kMost; }
+
+    /// Lists the cells of a group.
+    template <class Test>
+    HWY_INLINE void add(const Test& test, int lane, const Reach& reach, const FrontRaster& raster,
+                        int column, int row) {
+        const int group = row * raster.across + column;
+        for (int i = 0; i < kLanes; i += kStep) {
+            const GroupCells cells(reach, raster, column, row, i);
+            const Mask live = test.may_cover(cells.reached, cells.left, cells.top, raster.side);
+            const LaneBits found = bits(live);
+            raster.dirty[group] |= found << static_cast<unsigned>(i);
+            const auto first = static_cast<std::uint32_t>((group * kLanes + i) * kLanes + lane);
+            const auto all =
+                hn::Add(hn::ShiftLeft<4>(hn::Iota(kIndices, 0)), hn::Set(kIndices, first));
+            const auto compressed = hn::Compress(all, hn::RebindMask(kIndices, live));
+            hn::StoreU(compressed, kIndices, list[0].data() + count);
+            count += static_cast<std::size_t>(std::popcount(found));
         }
     }
-}
+
+    /// Tests what is listed.
+    template <class Make>
+    HWY_INLINE void test(const Make& make, const ScreenPacket* packets, std::uint32_t index,
+                         const FrontRaster& raster) {
+        const std::uint32_t* pairs = list[0].data();
+        for (std::size_t k = 0; k < count; ++k) {
+            const std::uint32_t lane = pairs[k] % kLanes;
+            const auto primitive = make(packets[index], static_cast<int>(lane));
+            primitive({packets, index * kLanes + lane},
+                      raster.fronts[raster.front_at[pairs[k] / kLanes]]);
+        }
+        count = 0;
+    }
+};
 
 /// Brings the farthest depths of cells up to date.
 HWY_INLINE void update_farthest(const FrontRaster& raster) {
@@ -450,26 +507,29 @@ void intersect_raster(const Basis& basis, const ScreenPacket* packets, std::uint
                         kInfinity};
     const LaneBits all = overlap_lanes(packet.bounds, window);
     if (all == 0) return;
+    const GroupLanes all_groups(packet.bounds, raster);
     for_kind(basis, packet, [&](const auto& make) {
+        Pairs pairs;
         for (LaneBits lanes = all; lanes != 0; lanes &= lanes - 1) {
             const int lane = std::countr_zero(lanes);
-            const Name name{packets, index * kLanes + static_cast<std::uint32_t>(lane)};
             const Reach reach(packet.bounds, lane);
-            const Groups groups(reach, raster);
-            const auto test = make(packet, lane);
+            const Groups groups = all_groups.of(lane);
+            const auto primitive = make(packet, lane);
             for (int row = groups.top; row <= groups.bottom; ++row) {
                 for (int column = groups.left; column <= groups.right; ++column) {
-                    test_group(test, name, reach, raster, column, row);
+                    pairs.add(primitive, lane, reach, raster, column, row);
+                    if (pairs.full()) pairs.test(make, packets, index, raster);
                 }
             }
         }
+        pairs.test(make, packets, index, raster);
     });
     update_farthest(raster);
 }
 
 bool raster_matters(const BoundsPacket& bounds, int lane, const FrontRaster& raster) {
     const Reach reach(bounds, lane);
-    const Groups groups(reach, raster);
+    const Groups groups = GroupLanes(bounds, raster).of(lane);
     for (int row = groups.top; row <= groups.bottom; ++row) {
         for (int column = groups.left; column <= groups.right; ++column) {
             for (int i = 0; i < kLanes; i += kStep) {

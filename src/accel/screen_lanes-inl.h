@@ -38,6 +38,9 @@ HWY_INLINE auto load(const Lanes<T>& lanes, int first) {
 HWY_INLINE Vector set(float value) { return hn::Set(kFloats, value); }
 
 HWY_INLINE LaneBits bits(Mask mask) {
+#if HWY_TARGET <= HWY_AVX3
+    return static_cast<LaneBits>(mask.raw);
+#endif
     alignas(8) std::uint8_t bytes[8] = {};
     hn::StoreMaskBits(kFloats, mask, bytes);
     return bytes[0] | static_cast<LaneBits>(bytes[1]) << 8U;
