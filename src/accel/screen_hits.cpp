@@ -13,52 +13,59 @@
 HWY_BEFORE_NAMESPACE();
 namespace ink::HWY_NAMESPACE {
 
-/// Lanes of a hit packet, to be written.
-struct HitLanes {
-    Mask lanes;
-    int i;
-    HitPacket& hits;
+/// Some lanes of a hit packet as they are found. They stay in registers: a packet has several
+/// winners, each of which would wait until what the one before wrote can be read.
+struct Found {
+    Vectors normal;
+    Vector u, v;
+    hn::Vec<Indices> object, primitive;
 
-    HWY_INLINE void put(Vector value, Lanes<float>& to) const {
-        hn::Store(hn::IfThenElse(lanes, value, load(to, i)), kFloats, to.data() + i);
+    HWY_INLINE Found()
+        : normal{hn::Zero(kFloats), hn::Zero(kFloats), hn::Zero(kFloats)},
+          u(hn::Zero(kFloats)),
+          v(hn::Zero(kFloats)),
+          object(hn::Set(kIndices, kNoObject)),
+          primitive(hn::Set(kIndices, kNoObject)) {}
+
+    HWY_INLINE void put_normal(Mask lanes, const Vectors& n) {
+        normal.x = hn::IfThenElse(lanes, n.x, normal.x);
+        normal.y = hn::IfThenElse(lanes, n.y, normal.y);
+        normal.z = hn::IfThenElse(lanes, n.z, normal.z);
     }
-    HWY_INLINE void put(std::uint32_t value, Lanes<std::uint32_t>& to) const {
-        const auto merged =
-            hn::IfThenElse(hn::RebindMask(kIndices, lanes), hn::Set(kIndices, value), load(to, i));
-        hn::Store(merged, kIndices, to.data() + i);
-    }
-    HWY_INLINE void put_normal(const Vectors& n) const {
-        put(n.x, hits.normal_x);
-        put(n.y, hits.normal_y);
-        put(n.z, hits.normal_z);
+
+    HWY_INLINE void store(int i, HitPacket& hits) const {
+        hn::Store(normal.x, kFloats, hits.normal_x.data() + i);
+        hn::Store(normal.y, kFloats, hits.normal_y.data() + i);
+        hn::Store(normal.z, kFloats, hits.normal_z.data() + i);
+        hn::Store(u, kFloats, hits.u.data() + i);
+        hn::Store(v, kFloats, hits.v.data() + i);
+        hn::Store(object, kIndices, hits.object.data() + i);
+        hn::Store(primitive, kIndices, hits.primitive.data() + i);
     }
 };
 
-HWY_INLINE Vectors vectors(const ScreenPacket& packet, int lane, std::size_t first) {
-    return {set(packet.hit[first][lane]), set(packet.hit[first + 1][lane]),
-            set(packet.hit[first + 2][lane])};
+HWY_INLINE Vectors vectors(const HitNumbers& hit, std::size_t first) {
+    return {set(hit[first]), set(hit[first + 1]), set(hit[first + 2])};
 }
 
 /// The hits of a sphere or triangle, from their place in the scene.
-HWY_INLINE void resolve_placed(const ScreenPacket& packet, int lane, const RayPacket& rays,
-                               const HitLanes& to) {
-    const int i = to.i;
-    const Vectors from = vectors(packet, lane, 0);
-    const auto t = load(to.hits.t, i);
+HWY_INLINE void resolve_placed(const ScreenPacket& packet, const HitNumbers& hit,
+                               const RayPacket& rays, int i, Vector t, Mask lanes, Found& found) {
+    if (packet.kind == ClusterKind::solids) return found.put_normal(lanes, vectors(hit, 3));
+    const Vectors from = vectors(hit, 0);
     const auto at = [&](const Lanes<float>& origin, const Lanes<float>& dir, Vector from_origin) {
         return hn::Sub(hn::Add(load(origin, i), hn::Mul(t, load(dir, i))), from_origin);
     };
-    if (packet.kind == ClusterKind::solids) return to.put_normal(vectors(packet, lane, 3));
     const Vectors p{at(rays.origin_x, rays.dir_x, from.x), at(rays.origin_y, rays.dir_y, from.y),
                     at(rays.origin_z, rays.dir_z, from.z)};
-    if (packet.kind == ClusterKind::spheres) return to.put_normal(p);
+    if (packet.kind == ClusterKind::spheres) return found.put_normal(lanes, p);
     const auto zero = hn::Zero(kFloats);
     const auto one = set(1.0F);
-    const auto u = hn::Min(hn::Max(dot(p, vectors(packet, lane, 6)), zero), one);
-    const auto v = hn::Min(hn::Max(dot(p, vectors(packet, lane, 9)), zero), hn::Sub(one, u));
-    to.put_normal(vectors(packet, lane, 3));
-    to.put(u, to.hits.u);
-    to.put(v, to.hits.v);
+    const auto u = hn::Min(hn::Max(dot(p, vectors(hit, 6)), zero), one);
+    const auto v = hn::Min(hn::Max(dot(p, vectors(hit, 9)), zero), hn::Sub(one, u));
+    found.put_normal(lanes, vectors(hit, 3));
+    found.u = hn::IfThenElse(lanes, u, found.u);
+    found.v = hn::IfThenElse(lanes, v, found.v);
 }
 
 /// The normal of a unit shape at a point of its surface.
@@ -94,70 +101,55 @@ HWY_INLINE Vectors unit_normal(const UnitShape& shape, const Vectors& p) {
     }
 }
 
-HWY_INLINE void resolve_glyph(const ScreenPacket& packet, int lane, const Front& front,
-                              const HitLanes& to) {
-    const int i = to.i;
+HWY_INLINE void resolve_glyph(const ScreenPacket& packet, int lane, const Front& front, int i,
+                              Mask lanes, Found& found) {
     const auto form = form_of<GlyphForm>(packet, lane);
     const LocalRays rays = local_rays(form, load(front.x, i), load(front.y, i));
     const auto s = hn::Sub(load(front.depth, i), set(form.z));
     const Vectors n = unit_normal(packet.shape, along(rays.p, rays.d, s));
-    const Vectors x = vectors(packet, lane, 0);
-    const Vectors y = vectors(packet, lane, 3);
-    const Vectors z = vectors(packet, lane, 6);
+    const HitNumbers& hit = packet.hit[static_cast<std::size_t>(lane)];
+    const Vectors x = vectors(hit, 0);
+    const Vectors y = vectors(hit, 3);
+    const Vectors z = vectors(hit, 6);
     const auto turned = [&](Vector a, Vector b, Vector c) {
         return hn::Add(hn::Add(hn::Mul(a, n.x), hn::Mul(b, n.y)), hn::Mul(c, n.z));
     };
-    to.put_normal({turned(x.x, y.x, z.x), turned(x.y, y.y, z.y), turned(x.z, y.z, z.z)});
+    found.put_normal(lanes, {turned(x.x, y.x, z.x), turned(x.y, y.y, z.y), turned(x.z, y.z, z.z)});
 }
 
-/// The lanes of a hit packet that one primitive won.
-HWY_INLINE void resolve_winner(const ScreenPacket* packets, std::uint32_t winner,
-                               const Front& front, const RayPacket& rays, HitPacket& hits) {
-    const ScreenPacket& packet = packets[winner / kLanes];
-    const int lane = static_cast<int>(winner % kLanes);
-    for (int i = 0; i < kLanes; i += kStep) {
-        const auto own = hn::Eq(load(front.winner, i), hn::Set(kIndices, winner));
-        const auto depth = load(front.depth, i);
-        const auto lanes =
-            hn::And(hn::RebindMask(kFloats, own),
-                    hn::And(hn::Lt(depth, set(kInfinity)), hn::Gt(depth, set(-kInfinity))));
-        if (hn::AllFalse(kFloats, lanes)) continue;
-        const HitLanes to{lanes, i, hits};
-        if (packet.kind == ClusterKind::glyphs) {
-            resolve_glyph(packet, lane, front, to);
-        } else {
-            resolve_placed(packet, lane, rays, to);
-        }
-        to.put(packet.object, hits.object);
-        to.put(packet.primitive[lane], hits.primitive);
+/// The lanes of a hit packet, from the i-th on, that one primitive won.
+HWY_INLINE void resolve_winner(const ScreenPacket& packet, int lane, const Front& front,
+                               const RayPacket& rays, int i, Vector t, Mask lanes, Found& found) {
+    if (packet.kind == ClusterKind::glyphs) {
+        resolve_glyph(packet, lane, front, i, lanes, found);
+    } else {
+        const HitNumbers& hit = packet.hit[static_cast<std::size_t>(lane)];
+        resolve_placed(packet, hit, rays, i, t, lanes, found);
     }
+    const auto own = hn::RebindMask(kIndices, lanes);
+    found.object = hn::IfThenElse(own, hn::Set(kIndices, packet.object), found.object);
+    found.primitive =
+        hn::IfThenElse(own, hn::Set(kIndices, packet.primitive[lane]), found.primitive);
 }
 
 void resolve_front(const Front& front, const RayPacket& rays, const ScreenPacket* packets,
                    HitPacket& hits) {
-    LaneBits left = 0;
     for (int i = 0; i < kLanes; i += kStep) {
         const auto depth = load(front.depth, i);
         const auto hit = hn::And(hn::Lt(depth, set(kInfinity)), hn::Gt(depth, set(-kInfinity)));
-        left |= bits(hit) << static_cast<unsigned>(i);
         // Rays start where depth is 0.
         const auto t = hn::Div(depth, hn::Sqrt(load(front.foreshortening, i)));
         hn::Store(hn::IfThenElse(hit, t, set(kInfinity)), kFloats, hits.t.data() + i);
-        for (Lanes<float>* lanes :
-             {&hits.normal_x, &hits.normal_y, &hits.normal_z, &hits.u, &hits.v}) {
-            hn::Store(hn::Zero(kFloats), kFloats, lanes->data() + i);
+        const auto winners = load(front.winner, i);
+        Found found;
+        for (LaneBits left = bits(hit); left != 0;) {
+            const std::uint32_t winner = front.winner[i + std::countr_zero(left)];
+            const auto won = hn::RebindMask(kFloats, hn::Eq(winners, hn::Set(kIndices, winner)));
+            left &= ~bits(won);
+            resolve_winner(packets[winner / kLanes], static_cast<int>(winner % kLanes), front, rays,
+                           i, t, hn::And(won, hit), found);
         }
-        const auto none = hn::Set(kIndices, kNoObject);
-        hn::Store(none, kIndices, hits.object.data() + i);
-        hn::Store(none, kIndices, hits.primitive.data() + i);
-    }
-    while (left != 0) {
-        const std::uint32_t winner = front.winner[std::countr_zero(left)];
-        resolve_winner(packets, winner, front, rays, hits);
-        for (int i = 0; i < kLanes; i += kStep) {
-            const auto own = hn::Eq(load(front.winner, i), hn::Set(kIndices, winner));
-            left &= ~(bits(hn::RebindMask(kFloats, own)) << static_cast<unsigned>(i));
-        }
+        found.store(i, hits);
     }
 }
 

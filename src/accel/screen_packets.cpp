@@ -91,10 +91,13 @@ HWY_INLINE void put_bounds(Half left, Half right, Half top, Half bottom, Half de
 
 /// A form's numbers for all sixteen lanes, as they are computed.
 using FormLanes = std::array<Lanes<float>, std::tuple_size_v<FormNumbers>>;
+/// Likewise what hits need.
+using HitLanes = std::array<Lanes<float>, std::tuple_size_v<HitNumbers>>;
 
 /// The first `count` numbers, a multiple of four, lane by lane.
-HWY_INLINE void lay_side_by_side(const FormLanes& form, std::size_t count,
-                                 std::array<FormNumbers, kLanes>& forms) {
+template <std::size_t kNumbers>
+HWY_INLINE void lay_side_by_side(const std::array<Lanes<float>, kNumbers>& form, std::size_t count,
+                                 std::array<std::array<float, kNumbers>, kLanes>& forms) {
     using Four = hn::FixedTag<float, 4>;
     constexpr Four kFour;
     for (std::size_t k = 0; k < count; k += 4) {
@@ -187,9 +190,8 @@ void prepare_spheres(Basis basis, const SphereLanes& spheres, ScreenPacket& pack
         prepare_perspective(basis, spheres, packet.bounds, form);
     }
     lay_side_by_side(form, 12, packet.forms);
-    packet.hit[0] = spheres.centre.x;
-    packet.hit[1] = spheres.centre.y;
-    packet.hit[2] = spheres.centre.z;
+    const HitLanes hit{spheres.centre.x, spheres.centre.y, spheres.centre.z};
+    lay_side_by_side(hit, 4, packet.hit);
 }
 
 // ---- Triangles ----
@@ -296,7 +298,7 @@ void prepare_triangles(Basis basis, const TriangleLanes& triangles, ScreenPacket
 void record_triangles(const TriangleLanes& triangles, ScreenPacket& packet) {
     using Floats = hn::CappedTag<float, kLanes>;
     constexpr Floats kFloats;
-    auto& hit = packet.hit;
+    HitLanes hit;
     for (int i = 0; i < kLanes; i += static_cast<int>(hn::MaxLanes(kFloats))) {
         const auto from = [&](const Lanes<float>& lanes) {
             return hn::Load(kFloats, lanes.data() + i);
@@ -334,6 +336,12 @@ void record_triangles(const TriangleLanes& triangles, ScreenPacket& packet) {
         keep(hn::Mul(minor(nz, ex, nx, ez), scale), hit[10]);
         keep(hn::Mul(minor(nx, ey, ny, ex), scale), hit[11]);
     }
+    lay_side_by_side(hit, 12, packet.hit);
+}
+
+void record_solids(const Points& normal, ScreenPacket& packet) {
+    const HitLanes hit{{{}, {}, {}, normal.x, normal.y, normal.z}};
+    lay_side_by_side(hit, 8, packet.hit);
 }
 
 // ---- Glyphs ----
@@ -375,6 +383,7 @@ HWY_INLINE void bound_glyphs(const Basis& basis, bool flat, const Triple& c, con
 
 void prepare_glyphs(Basis basis, const GlyphLanes& glyphs, ScreenPacket& packet) {
     FormLanes form;
+    HitLanes hit;
     const bool flat =
         packet.shape.kind == GlyphKind::disc || packet.shape.kind == GlyphKind::rectangle;
     for (int i = 0; i < kLanes; i += kStep) {
@@ -402,9 +411,9 @@ void prepare_glyphs(Basis basis, const GlyphLanes& glyphs, ScreenPacket& packet)
             put(hn::Mul(own.x, pixel), form[3 + k], i);
             put(hn::Mul(own.y, pixel), form[6 + k], i);
             put(ahead, form[9 + k], i);
-            put(row.x, packet.hit[3 * k], i);
-            put(row.y, packet.hit[3 * k + 1], i);
-            put(row.z, packet.hit[3 * k + 2], i);
+            put(row.x, hit[3 * k], i);
+            put(row.y, hit[3 * k + 1], i);
+            put(row.z, hit[3 * k + 2], i);
             const Double size = hn::Add(hn::Add(hn::Abs(row.x), hn::Abs(row.y)), hn::Abs(row.z));
             finite = hn::And(finite, hn::Lt(size, number(1e30)));
         }
@@ -418,6 +427,7 @@ void prepare_glyphs(Basis basis, const GlyphLanes& glyphs, ScreenPacket& packet)
             packet.bounds.left, i);
     }
     lay_side_by_side(form, 16, packet.forms);
+    lay_side_by_side(hit, 12, packet.hit);
 }
 
 // ---- Boxes ----
@@ -461,6 +471,7 @@ HWY_EXPORT(prepare_boxes);
 HWY_EXPORT(prepare_glyphs);
 HWY_EXPORT(prepare_spheres);
 HWY_EXPORT(prepare_triangles);
+HWY_EXPORT(record_solids);
 HWY_EXPORT(record_triangles);
 
 namespace {
@@ -521,9 +532,7 @@ void prepare(const Basis& basis, const Clusters& clusters, const Cluster& cluste
         case ClusterKind::solids: {
             const SolidLanes& faces = clusters.solids[cluster.packet];
             HWY_DYNAMIC_DISPATCH(prepare_triangles)(basis, faces.triangles, packet);
-            packet.hit[3] = faces.normal.x;
-            packet.hit[4] = faces.normal.y;
-            packet.hit[5] = faces.normal.z;
+            HWY_DYNAMIC_DISPATCH(record_solids)(faces.normal, packet);
             break;
         }
         case ClusterKind::glyphs:

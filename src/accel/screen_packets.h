@@ -62,6 +62,9 @@ struct GlyphForm {
 using FormNumbers = std::array<float, 24>;
 static_assert(sizeof(TriangleForm) <= sizeof(FormNumbers));
 
+/// What a hit needs of its primitive; see ScreenPacket.
+using HitNumbers = std::array<float, 12>;
+
 /// The primitives of a cluster as a camera sees them.
 struct ScreenPacket {
     BoundsPacket bounds;
@@ -69,7 +72,7 @@ struct ScreenPacket {
     /// What a hit needs of its primitive. Of a sphere its centre. Of a triangle its first corner,
     /// normal, u and v axes: with p the hit less the corner, the barycentric coordinates are u . p
     /// and v . p. Of a glyph the rows of the inverse of its placement's map.
-    std::array<Lanes<float>, 12> hit;
+    std::array<HitNumbers, kLanes> hit;
     Lanes<std::uint32_t> primitive;
     std::uint32_t object = 0;
     ClusterKind kind = ClusterKind::spheres;
