@@ -7,6 +7,7 @@
 #include <cmath>
 #include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "base/error.h"
@@ -184,6 +185,22 @@ TEST(Lights, AddUp) {
                 0.005F);
     // A surface upright in the picture sees half of the sky above and half of the ground.
     EXPECT_NEAR(level("sky:strength=0.6,ground=#000000"), 0.3F * color, 0.005F);
+}
+
+/// Rays from what is not a sphere take a hundred times as long as the rest of the frame.
+TEST(Lights, ComeFromAllAroundUnlessToldWhereAtomsAndParticlesAreSpheres) {
+    const auto ambient = [](std::vector<Object> objects, const Settings& settings = {}) {
+        return shading_of(settings, Scene(std::move(objects))).ambient.value();
+    };
+    std::vector<Object> balls = random_objects(1, 5, 3);
+    EXPECT_EQ(ambient(balls), 1.0F);
+    EXPECT_EQ(ambient({balls[1]}), 0.0F);
+    std::vector<Object> balls_and_sticks{balls[0], copied_sticks(1, 5)};
+    balls_and_sticks[1].kind = ObjectKind::molecule;
+    EXPECT_EQ(ambient(balls_and_sticks), 0.0F);
+    Settings told;
+    told.shading.ambient = 0.5F;
+    EXPECT_EQ(ambient(balls_and_sticks, told), 0.5F);
 }
 
 TEST(Lights, SayWhatIsWrong) {

@@ -25,7 +25,7 @@ std::string looks_help() {
     for (const Look& look : looks()) texts.push_back(fmt::format("{} ({})", look.name, look.what));
     return fmt::format(
         "A set of values for other settings, each of which can still be given: {}; without it soft "
-        "for molecules and particles, plain for all else",
+        "for atoms and particles drawn as spheres, plain for all else",
         fmt::join(texts, ", "));
 }
 
@@ -44,8 +44,8 @@ std::vector<Setting> light_rows() {
     return {
         {"ambient", "Shading", "F",
          "Share of light that comes from all around and is dim in clefts (ambient occlusion); by "
-         "default 1 for molecules and particles, 0 for all else, with another --shade than lambert "
-         "and for method stencil",
+         "default 1 for atoms and particles drawn as spheres, 0 for all else, with another --shade "
+         "than lambert and for method stencil",
          [](S& s, Text t) {
              s.shading.ambient =
                  read_optional(t, [](Text v) { return static_cast<float>(read_number(v, 0, 1)); });

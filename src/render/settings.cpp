@@ -9,6 +9,7 @@
 #include <cmath>
 #include <iterator>
 #include <utility>
+#include <variant>
 
 #include "base/error.h"
 #include "base/text.h"
@@ -563,13 +564,26 @@ int Settings::lattice_points() const {
     return std::clamp(side, lattice, kMostLatticePoints);
 }
 
+namespace {
+
+/// Atoms and particles as spheres, among meshes if any: what light from all around costs little
+/// for. Sticks and glyphs would take it by tracing rays, a hundred times the rest of the frame.
+bool draws_balls_alone(const Scene& scene) {
+    bool balls = false;
+    for (const Object& object : scene.objects()) {
+        const bool is_mesh = std::holds_alternative<Mesh>(object.shape);
+        if (!is_mesh && !std::holds_alternative<Spheres>(object.shape)) return false;
+        balls |= object.kind == ObjectKind::molecule || object.kind == ObjectKind::particles;
+    }
+    return balls;
+}
+
+}  // namespace
+
 ShadingSettings shading_of(const Settings& settings, const Scene& scene) {
     ShadingSettings shading = settings.shading;
-    const bool has_balls = std::ranges::any_of(scene.objects(), [](const Object& object) {
-        return object.kind == ObjectKind::molecule || object.kind == ObjectKind::particles;
-    });
-    const bool soft =
-        has_balls && settings.method == Method::edges && shading.mode == ShadeMode::lambert;
+    const bool soft = settings.method == Method::edges && shading.mode == ShadeMode::lambert &&
+                      draws_balls_alone(scene);
     if (!shading.ambient) shading.ambient = soft ? 1.0F : 0.0F;
     return shading;
 }

@@ -178,8 +178,8 @@ std::span<const Setting> settings_table();
 const Setting& find_setting(std::string_view name);
 
 /// How a scene is shaded, with nothing left open: light comes from all around unless told otherwise
-/// where method "edges" draws molecules or particles. Meshes and exact shapes have diffuse light
-/// alone: it shows their form as well, in a tenth of the time.
+/// where method "edges" draws atoms or particles as spheres. All else has diffuse light alone: it
+/// shows the form as well, in a tenth of the time or less.
 ShadingSettings shading_of(const Settings& settings, const Scene& scene);
 
 /// Checks what concerns several settings at once, and that the picture fits into the machine's
