@@ -54,6 +54,18 @@ void find_union(const BoundsPacket& of, BoundsPacket& packet, int lane) {
     packet.depth[lane] = least(of.depth);
 }
 
+/// Bounds of one primitive.
+struct Reach {
+    float left, right, top, bottom, depth;
+
+    HWY_INLINE Reach(const BoundsPacket& bounds, int lane)
+        : left(bounds.left[lane]),
+          right(bounds.right[lane]),
+          top(bounds.top[lane]),
+          bottom(bounds.bottom[lane]),
+          depth(bounds.depth[lane]) {}
+};
+
 // ---- The nearest hit ----
 
 /// What a primitive is called while it is tested.
@@ -102,7 +114,8 @@ struct SphereTest {
     SphereForm form;
     float origin_step, slope_step;
 
-    HWY_INLINE Mask may_cover(Mask cells, Vector /*left*/, Vector /*top*/, float /*side*/) const {
+    HWY_INLINE Mask may_cover(Mask cells, Vector /*left*/, Vector /*top*/, const Reach& /*reach*/,
+                              float /*side*/) const {
         return cells;
     }
 
@@ -160,14 +173,18 @@ struct TriangleTest {
     TriangleForm form;
 
     /// Those of the cells that are not beyond an edge, by their corner that lies farthest inside.
-    HWY_INLINE Mask may_cover(Mask cells, Vector left, Vector top, float side) const {
+    HWY_INLINE Mask may_cover(Mask cells, Vector left, Vector top, const Reach& reach,
+                              float side) const {
+        // No cell that is reached begins farther from an end of an edge.
+        const float width = reach.right - reach.left + side;
+        const float height = reach.bottom - reach.top + side;
         for (const TriangleForm::Edge& edge : form.edges) {
             const auto along = hn::Mul(set(edge.dx), hn::Sub(top, set(edge.y)));
             const auto across = hn::Mul(set(edge.dy), hn::Sub(left, set(edge.x)));
-            const auto slack = hn::Mul(hn::Add(hn::Abs(along), hn::Abs(across)), set(kRounding));
+            const float slack =
+                kRounding * (std::abs(edge.dx) * height + std::abs(edge.dy) * width);
             const float most = (std::max(edge.dx, 0.0F) + std::max(-edge.dy, 0.0F)) * side;
-            const auto value = hn::Add(hn::Sub(along, across), set(most));
-            cells = hn::And(cells, hn::Ge(value, hn::Neg(slack)));
+            cells = hn::And(cells, hn::Ge(hn::Sub(along, across), set(-(most + slack))));
         }
         return cells;
     }
@@ -292,7 +309,8 @@ struct GlyphTest {
     float slope, middle;
     bool capped;
 
-    HWY_INLINE Mask may_cover(Mask cells, Vector /*left*/, Vector /*top*/, float /*side*/) const {
+    HWY_INLINE Mask may_cover(Mask cells, Vector /*left*/, Vector /*top*/, const Reach& /*reach*/,
+                              float /*side*/) const {
         return cells;
     }
 
@@ -375,18 +393,6 @@ void intersect_front(const Basis& basis, const ScreenPacket* packets, std::uint3
 
 // ---- Rasters ----
 
-/// Bounds of one primitive.
-struct Reach {
-    float left, right, top, bottom, depth;
-
-    HWY_INLINE Reach(const BoundsPacket& bounds, int lane)
-        : left(bounds.left[lane]),
-          right(bounds.right[lane]),
-          top(bounds.top[lane]),
-          bottom(bounds.bottom[lane]),
-          depth(bounds.depth[lane]) {}
-};
-
 /// Groups of cells that one primitive reaches into.
 struct Groups {
     int left, right, top, bottom;
@@ -460,7 +466,8 @@ struct Pairs {
         const int group = row * raster.across + column;
         for (int i = 0; i < kLanes; i += kStep) {
             const GroupCells cells(reach, raster, column, row, i);
-            const Mask live = test.may_cover(cells.reached, cells.left, cells.top, raster.side);
+            const Mask live =
+                test.may_cover(cells.reached, cells.left, cells.top, reach, raster.side);
             const LaneBits found = bits(live);
             raster.dirty[group] |= found << static_cast<unsigned>(i);
             const auto first = static_cast<std::uint32_t>((group * kLanes + i) * kLanes + lane);
