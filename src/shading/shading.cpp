@@ -147,13 +147,13 @@ bool Shader::shade(const SurfacePacket& surface, ColorPacket& colors) const {
 }
 
 void Shader::smooth(const HitPacket& hits, NormalPacket& normals) const {
+    if (any_smooth_) return interpolate(hits, &Surface::corner_normals, normals);
     normals = {hits.normal_x, hits.normal_y, hits.normal_z};
-    if (any_smooth_) interpolate(hits, &Surface::corner_normals, normals);
 }
 
 void Shader::line_normals(const HitPacket& hits, NormalPacket& normals) const {
+    if (any_smooth_) return interpolate(hits, &Surface::line_normals, normals);
     normals = {hits.normal_x, hits.normal_y, hits.normal_z};
-    if (any_smooth_) interpolate(hits, &Surface::line_normals, normals);
 }
 
 void Shader::prefetch(const HitPacket& hits) const {
@@ -183,10 +183,24 @@ Color Shader::surface_color(const Surface& surface, const HitPacket& hits, int l
     return {w * a.r + u * b.r + v * c.r, w * a.g + u * b.g + v * c.g, w * a.b + u * b.b + v * c.b};
 }
 
+namespace {
+
+/// In registers as wide as those that read it: a wide load waits for narrow stores.
+INKTRACE_MULTIVERSION
+void fill(Color color, ColorLanes& colors) {
+    for (int i = 0; i < kLanes; ++i) {
+        colors.r[i] = color.r;
+        colors.g[i] = color.g;
+        colors.b[i] = color.b;
+    }
+}
+
+}  // namespace
+
 void Shader::look_up_colors(const HitPacket& hits, std::uint32_t object, ColorLanes& colors) const {
     if (object != kSeveralObjects && surfaces_[object].primitive_colors == nullptr &&
         surfaces_[object].vertex_colors == nullptr) {
-        colors.fill(surfaces_[object].color);
+        fill(surfaces_[object].color, colors);
         return;
     }
     // Neighbours mostly hit the same primitive.
@@ -210,16 +224,19 @@ void Shader::look_up_colors(const HitPacket& hits, std::uint32_t object, ColorLa
 void Shader::interpolate(const HitPacket& hits, const std::uint32_t* Surface::*source,
                          NormalPacket& normals) const {
     const std::uint32_t object = shared_object(hits);
-    if (object == kNoObject) return;
-    if (object != kSeveralObjects) {
-        const std::uint32_t* packed = surfaces_[object].*source;
-        if (packed != nullptr) interpolate_normals(packed, object, hits, normals);
-        return;
+    const bool several = object == kSeveralObjects;
+    if (object != kNoObject && !several && surfaces_[object].*source != nullptr) {
+        // Straight from the hits: what has just been copied could not be read at once.
+        const NormalLanes geometric{hits.normal_x, hits.normal_y, hits.normal_z};
+        return interpolate_normals(surfaces_[object].*source, object, hits, geometric, normals);
     }
+    normals = {hits.normal_x, hits.normal_y, hits.normal_z};
+    if (!several) return;
     for (std::uint32_t k = 0; k < surfaces_.size(); ++k) {
         const std::uint32_t* packed = surfaces_[k].*source;
         const bool seen = std::ranges::find(hits.object, k) != hits.object.end();
-        if (seen && packed != nullptr) interpolate_normals(packed, k, hits, normals);
+        if (!seen || packed == nullptr) continue;
+        interpolate_normals(packed, k, hits, {normals.x, normals.y, normals.z}, normals);
     }
 }
 

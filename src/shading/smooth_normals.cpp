@@ -45,10 +45,9 @@ HWY_INLINE void add_corner(hn::Vec<Bits> packed, Vector weight, Sum& sum) {
 }
 
 void interpolate(const std::uint32_t* corner_normals, std::uint32_t object, const HitPacket& hits,
-                 NormalPacket& normals) {
+                 const NormalLanes& geometric, NormalPacket& normals) {
     for (int i = 0; i < kLanes; i += static_cast<int>(hn::MaxLanes(kFloats))) {
         const auto own = hn::Eq(hn::Load(kBits, hits.object.data() + i), hn::Set(kBits, object));
-        if (hn::AllFalse(kBits, own)) continue;
         const auto primitive = hn::IfThenElseZero(own, hn::Load(kBits, hits.primitive.data() + i));
         const auto twice = hn::Add(primitive, primitive);
         const auto first = hn::BitCast(kIndices, hn::Add(twice, primitive));
@@ -63,9 +62,9 @@ void interpolate(const std::uint32_t* corner_normals, std::uint32_t object, cons
         add_corner(corner(1), u, sum);
         add_corner(corner(2), v, sum);
 
-        const auto gx = load(normals.x, i);
-        const auto gy = load(normals.y, i);
-        const auto gz = load(normals.z, i);
+        const auto gx = load(geometric.x, i);
+        const auto gy = load(geometric.y, i);
+        const auto gz = load(geometric.z, i);
         const auto dot = [](auto a, auto b, auto c, auto d, auto e, auto f) {
             return hn::Add(hn::Add(hn::Mul(a, d), hn::Mul(b, e)), hn::Mul(c, f));
         };
@@ -91,8 +90,9 @@ namespace ink {
 HWY_EXPORT(interpolate);
 
 void interpolate_normals(const std::uint32_t* corner_normals, std::uint32_t object,
-                         const HitPacket& hits, NormalPacket& normals) {
-    HWY_DYNAMIC_DISPATCH(interpolate)(corner_normals, object, hits, normals);
+                         const HitPacket& hits, const NormalLanes& geometric,
+                         NormalPacket& normals) {
+    HWY_DYNAMIC_DISPATCH(interpolate)(corner_normals, object, hits, geometric, normals);
 }
 
 }  // namespace ink
