@@ -5,22 +5,13 @@
 #include <cstring>
 #include <variant>
 
+#include "base/memory.h"
 #include "base/multiversion.h"
 #include "base/parallel.h"
 
 namespace ink {
 
 namespace {
-
-/// A row of a block. A size known to the compiler makes it one move.
-template <class T>
-void copy_row(const T* from, int count, T* to) {
-    if (count == kBlockSide) {
-        std::copy_n(from, kBlockSide, to);
-    } else {
-        std::copy_n(from, count, to);
-    }
-}
 
 /// Numbers of the triangles that a packet hit, of one object, whose first triangle has number
 /// `first`. False if it hit another object, too.
@@ -43,10 +34,10 @@ FaceMap::FaceMap(const Scene& scene, Size size, int lattice)
       lattice_(lattice),
       blocks_across_((size.width + kBlockSide - 1) / kBlockSide),
       blocks_down_((size.height + kBlockSide - 1) / kBlockSide),
-      triangles_(size.pixels()),
+      triangles_(static_cast<std::size_t>(blocks_across_) * static_cast<std::size_t>(blocks_down_)),
       cells_(size.pixels() * static_cast<std::size_t>(lattice) * static_cast<std::size_t>(lattice)),
-      blocks_(static_cast<std::size_t>(blocks_across_) * static_cast<std::size_t>(blocks_down_)) {
-    std::ranges::fill(triangles_, kNone);
+      blocks_(triangles_.size()) {
+    use_large_pages(triangles_.data(), triangles_.size() * sizeof(triangles_[0]));
     std::uint32_t triangles = 0;
     for (const Object& object : scene.objects()) {
         meshes_.push_back(std::get_if<Mesh>(&object.shape));
@@ -65,21 +56,28 @@ FaceMap::FaceMap(const FaceMap& small, Size size, const std::vector<int>& column
       lattice_(1),
       blocks_across_((size.width + kBlockSide - 1) / kBlockSide),
       blocks_down_((size.height + kBlockSide - 1) / kBlockSide),
-      triangles_(size.pixels()),
+      triangles_(static_cast<std::size_t>(blocks_across_) * static_cast<std::size_t>(blocks_down_)),
       cells_(size.pixels()),
-      blocks_(static_cast<std::size_t>(blocks_across_) * static_cast<std::size_t>(blocks_down_)) {
+      blocks_(triangles_.size()) {
     constexpr std::size_t kRows = 32;
-    parallel_ranges(
-        static_cast<std::size_t>(size.height), kRows, [&](std::size_t begin, std::size_t end) {
-            for (auto y = static_cast<int>(begin); y < static_cast<int>(end); ++y) {
-                std::uint32_t* const row = triangles_.data() + pixel(0, y);
-                const std::uint32_t* const from =
-                    small.triangles_.data() + small.pixel(0, row_of[static_cast<std::size_t>(y)]);
-                for (std::size_t x = 0; x < column_of.size(); ++x) {
-                    row[x] = from[column_of[x]];
-                }
-            }
-        });
+    parallel_ranges(static_cast<std::size_t>(size.height), kRows,
+                    [&](std::size_t begin, std::size_t end) {
+                        for (auto y = static_cast<int>(begin); y < static_cast<int>(end); ++y) {
+                            const int from_y = row_of[static_cast<std::size_t>(y)];
+                            Lanes<std::uint32_t>* const row = triangles_.data() + block(0, y);
+                            const Lanes<std::uint32_t>* const from =
+                                small.triangles_.data() + small.block(0, from_y);
+                            for (int x = 0; x < size_.width; ++x) {
+                                const int from_x = column_of[static_cast<std::size_t>(x)];
+                                row[x / kBlockSide][lane(x, y)] =
+                                    from[from_x / kBlockSide][lane(from_x, from_y)];
+                            }
+                        }
+                    });
+    const int right = (blocks_across_ - 1) * kBlockSide;
+    const int bottom = (blocks_down_ - 1) * kBlockSide;
+    for (int y = 0; y < size.height; y += kBlockSide) clear_beyond(right, y);
+    for (int x = 0; x < size.width; x += kBlockSide) clear_beyond(x, bottom);
 }
 
 FaceMap::Triangle FaceMap::triangle(std::uint32_t number) const {
@@ -89,25 +87,31 @@ FaceMap::Triangle FaceMap::triangle(std::uint32_t number) const {
 }
 
 void FaceMap::put(int x, int y, const HitPacket& hits) {
-    if (x < 0 || y < 0) return;
-    const int columns = std::min(kBlockSide, size_.width - x);
-    const int rows = std::min(kBlockSide, size_.height - y);
-    if (columns <= 0) return;
-    Lanes<std::uint32_t> numbers;
+    if (!has(x, y)) return;
+    Lanes<std::uint32_t>& numbers = triangles_[block(x, y)];
     const std::uint32_t object = hits.object[0];
     const bool mesh = object != kNoObject && meshes_[object] != nullptr;
     if (!mesh || !number_one_object(hits, object, first_[object], numbers)) {
         for (int i = 0; i < kLanes; ++i) numbers[i] = number(hits, i);
     }
-    for (int row = 0; row < rows; ++row) {
-        const auto first = static_cast<std::size_t>(row * kBlockSide);
-        copy_row(numbers.data() + first, columns, triangles_.data() + pixel(x, y + row));
+    clear_beyond(x, y);
+}
+
+/// Pixels of a block that lie beyond the picture see nothing.
+void FaceMap::clear_beyond(int x, int y) {
+    if (has(x + kBlockSide - 1, y + kBlockSide - 1)) return;
+    Lanes<std::uint32_t>& numbers = triangles_[block(x, y)];
+    for (int i = 0; i < kLanes; ++i) {
+        if (!has(x + i % kBlockSide, y + i / kBlockSide)) numbers[i] = kNone;
     }
 }
 
-void FaceMap::put(int x, int y, const HitPacket& hits, int lane) {
-    if (x < 0 || y < 0 || x >= size_.width || y >= size_.height) return;
-    triangles_[pixel(x, y)] = number(hits, lane);
+void FaceMap::put(int x, int y, const HitPacket& hits, int from) {
+    if (has(x, y)) triangles_[block(x, y)][lane(x, y)] = number(hits, from);
+}
+
+void FaceMap::put_nothing(int x, int y) {
+    if (has(x, y)) triangles_[block(x, y)].fill(kNone);
 }
 
 void FaceMap::mark(int i, int j) {
@@ -142,19 +146,6 @@ bool FaceMap::any_marked(int x, int y, float reach) const {
         }
     }
     return false;
-}
-
-bool FaceMap::get(int x, int y, Lanes<std::uint32_t>& triangles) const {
-    triangles.fill(kNone);
-    const int columns = std::min(kBlockSide, size_.width - x);
-    const int rows = std::min(kBlockSide, size_.height - y);
-    for (int row = 0; row < rows; ++row) {
-        copy_row(triangles_.data() + pixel(x, y + row), columns,
-                 triangles.data() + static_cast<std::size_t>(row * kBlockSide));
-    }
-    std::uint32_t all = kNone;
-    for (int i = 0; i < kLanes; ++i) all &= triangles[i];
-    return all != kNone;
 }
 
 }  // namespace ink

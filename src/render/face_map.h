@@ -30,10 +30,12 @@ class FaceMap {
         return meshes_[object];
     }  ///< null: another shape
 
-    /// What 4 x 4 pixels see; pixels beyond the picture are dropped.
+    /// What 4 x 4 pixels see; blocks beyond the picture are dropped.
     void put(int x, int y, const HitPacket& hits);
     /// What pixel (x, y) sees.
     void put(int x, int y, const HitPacket& hits, int lane);
+    /// No pixel of a block sees anything. Every block must be put, by one way or another.
+    void put_nothing(int x, int y);
 
     /// Marks a cell of the lattice, the one with point (i, j) as its upper left corner: another
     /// line runs through it, and the lines between faces in it were found as crossings.
@@ -42,9 +44,12 @@ class FaceMap {
     /// Whether any cell is marked within so many pixels of the 4 x 4 pixels at (x, y).
     bool any_marked(int x, int y, float reach) const;
 
-    /// What 4 x 4 pixels see: triangles, counted over all meshes, or kNone. False if that is
-    /// nothing.
-    bool get(int x, int y, Lanes<std::uint32_t>& triangles) const;
+    /// What the 4 x 4 pixels at (x, y) see: triangles, counted over all meshes, or kNone.
+    const Lanes<std::uint32_t>& triangles(int x, int y) const { return triangles_[block(x, y)]; }
+    /// Says that block (x, y) will be asked for soon.
+    void prefetch(int x, int y) const {
+        if (has(x, y)) __builtin_prefetch(&triangles_[block(x, y)]);
+    }
     struct Triangle {
         std::uint32_t object, primitive;
     };
@@ -60,19 +65,22 @@ class FaceMap {
                    ? kNone
                    : first_[object] + hits.primitive[lane];
     }
-    std::size_t pixel(int x, int y) const {
-        return static_cast<std::size_t>(y) * static_cast<std::size_t>(size_.width) +
-               static_cast<std::size_t>(x);
+    std::size_t block(int x, int y) const {
+        return static_cast<std::size_t>(y / kBlockSide) * static_cast<std::size_t>(blocks_across_) +
+               static_cast<std::size_t>(x / kBlockSide);
     }
+    static int lane(int x, int y) { return y % kBlockSide * kBlockSide + x % kBlockSide; }
+    void clear_beyond(int x, int y);
+    bool has(int x, int y) const { return x >= 0 && y >= 0 && x < size_.width && y < size_.height; }
 
     std::vector<const Mesh*> meshes_;   ///< of the scene's objects; null for other shapes
     std::vector<std::uint32_t> first_;  ///< an object: number of its first triangle
     Size size_;
     int lattice_;
     int blocks_across_, blocks_down_;
-    Plane<std::uint32_t> triangles_;
-    std::vector<std::uint8_t> cells_;   ///< 1: marked
-    std::vector<std::uint8_t> blocks_;  ///< 1: one of their cells is
+    Plane<Lanes<std::uint32_t>> triangles_;  ///< by blocks, so that each is one cache line
+    std::vector<std::uint8_t> cells_;        ///< 1: marked
+    std::vector<std::uint8_t> blocks_;       ///< 1: one of their cells is
 };
 
 }  // namespace ink

@@ -85,10 +85,11 @@ float LineDrawer::cue_depth(int x, int y, const NearestEdges& nearest,
 /// lines between faces, once a style.
 template <class Draw>
 void LineDrawer::for_each_face_block(const Tile& tile, Draw draw) {
-    face_edges_->begin();
+    face_edges_->enter(tile);
     middles_.clear();
     for (int y = tile.y0; y < tile.y1; y += kBlockSide) {
         for (int x = tile.x0; x < tile.x1; x += kBlockSide) {
+            if (!face_edges_->sees(x, y)) continue;
             middles_.push_back({static_cast<float>(x) + 0.5F * kBlockSide,
                                 static_cast<float>(y) + 0.5F * kBlockSide});
         }
@@ -99,6 +100,7 @@ void LineDrawer::for_each_face_block(const Tile& tile, Draw draw) {
     const float* scale_of_block = scales_.data();
     for (int y = tile.y0; y < tile.y1; y += kBlockSide) {
         for (int x = tile.x0; x < tile.x1; x += kBlockSide) {
+            if (!face_edges_->sees(x, y)) continue;
             const float thinned = *scale_of_block++;
             if (!face_edges_->measure(x, y, edges_.ink.reach(), nearest)) continue;
             Lanes<float> strength;

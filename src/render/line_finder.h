@@ -148,6 +148,7 @@ class LineFinder {
     bool see_mesh(int i, int j, SurfaceKey& key) const;
     void identify(std::span<const Vec2f> points, std::span<SurfaceKey> out);
     void map_faces(const Tile& tile);
+    void map_block(int x, int y);
     void add_face_density(std::size_t block);
     void cross_faces();
     void cross_faces(int i, int j, bool down);

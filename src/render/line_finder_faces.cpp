@@ -2,71 +2,52 @@
 // keeps for that, and their crossings where other lines run or somebody wants data.
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
 
-#include "base/multiversion.h"
 #include "render/line_finder.h"
+#include "render/nearest_edges.h"
 
 namespace ink {
 
 /// Keeps what pixel centres, or the lattice points next to them, see.
 void LineFinder::map_faces(const Tile& tile) {
     const Timer timer(stats_.lines_ms);
-    const int q = edges_.q;
     for (std::size_t k = 0; k < blocks_.size(); ++k) {
         // Those cut off at the tile's end belong to the next tile, which may be at work.
         const bool whole = blocks_[k].columns == kBlockSide && blocks_[k].rows == kBlockSide;
-        if (!whole) continue;
-        if (q == 1) faces_->put(blocks_[k].x, blocks_[k].y, hits_[k]);
-        add_face_density(k);
+        if (whole) add_face_density(k);
     }
-    if (q == 1) return;
-    for (int y = tile.y0; y < tile.y1; ++y) {
-        for (int x = tile.x0; x < tile.x1; ++x) {
-            const int i = x * q + q / 2 - grid_.x0;
-            const int j = y * q + q / 2 - grid_.y0;
-            if (block_index(i / kBlockSide, j / kBlockSide) == kEmptyBlock) continue;
-            const LatticeHit hit = hit_at(i, j);
-            faces_->put(x, y, *hit.hits, hit.lane);
-        }
+    for (int y = tile.y0; y < tile.y1; y += kBlockSide) {
+        for (int x = tile.x0; x < tile.x1; x += kBlockSide) map_block(x, y);
     }
 }
 
-namespace {
-
-/// How many of a block's points see another primitive of their object than the next one in their
-/// row and the next one in their column.
-INKTRACE_MULTIVERSION
-int count_changes(const HitPacket& hits) {
-    // Behind the last row there is nothing.
-    std::array<std::uint32_t, kLanes + kBlockSide> object{};
-    std::array<std::uint32_t, kLanes + kBlockSide> primitive{};
-    for (std::size_t i = 0; i < kLanes; ++i) {
-        object[i] = hits.object.at(i);
-        primitive[i] = hits.primitive.at(i);
+void LineFinder::map_block(int x, int y) {
+    const int q = edges_.q;
+    if (q == 1) {
+        const std::uint32_t block =
+            block_index((x - grid_.x0) / kBlockSide, (y - grid_.y0) / kBlockSide);
+        if (block == kEmptyBlock) return faces_->put_nothing(x, y);
+        return faces_->put(x, y, hits_[block]);
     }
-    std::fill(object.begin() + kLanes, object.end(), kNoObject);
-    int changes = 0;
-    for (std::size_t step : {std::size_t{1}, std::size_t{kBlockSide}}) {
-        for (std::size_t i = 0; i < kLanes; ++i) {
-            const bool within = step != 1 || i % kBlockSide + 1 < kBlockSide;
-            const bool alike = object[i] == object[i + step] && object[i] != kNoObject;
-            changes += within && alike && primitive[i] != primitive[i + step] ? 1 : 0;
-        }
+    faces_->put_nothing(x, y);
+    for (int n = 0; n < kLanes; ++n) {
+        const int i = (x + n % kBlockSide) * q + q / 2 - grid_.x0;
+        const int j = (y + n / kBlockSide) * q + q / 2 - grid_.y0;
+        if (i >= grid_.width || j >= grid_.height) continue;  // beyond the picture
+        if (block_index(i / kBlockSide, j / kBlockSide) == kEmptyBlock) continue;
+        const LatticeHit hit = hit_at(i, j);
+        faces_->put(x + n % kBlockSide, y + n / kBlockSide, *hit.hits, hit.lane);
     }
-    return changes;
 }
-
-}  // namespace
 
 /// How long the lines between faces are in a block, from how often its points see different ones:
 /// a line of any direction crosses lattice edges 4 / pi times a spacing, on average.
 void LineFinder::add_face_density(std::size_t block) {
     const Block& place = blocks_[block];
     const HitPacket& hits = hits_[block];
-    const int changes = count_changes(hits);
+    const int changes = count_changes(hits.object, hits.primitive);
     if (changes == 0) return;
     const std::uint32_t object =
         *std::ranges::find_if(hits.object, [](std::uint32_t o) { return o != kNoObject; });

@@ -1,6 +1,6 @@
 #include "render/nearest_edges.h"
 
-#include <bit>
+#include "accel/tracer.h"
 
 // Everything between the two namespace macros is built once for each instruction set.
 #undef HWY_TARGET_INCLUDE
@@ -15,10 +15,8 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 using Floats = hn::CappedTag<float, kLanes>;
 using Numbers = hn::Rebind<std::uint32_t, Floats>;
-using Indices = hn::Rebind<std::int32_t, Floats>;
 constexpr Floats kFloats;
 constexpr Numbers kNumbers;
-constexpr Indices kIndices;
 using Number = hn::Vec<Floats>;
 
 HWY_INLINE Number set(float value) { return hn::Set(kFloats, value); }
@@ -40,35 +38,56 @@ HWY_INLINE Approach approach(Number px, Number py, Number ax, Number ay, Number 
     return {vx, vy, hn::Add(hn::Mul(vx, vx), hn::Mul(vy, vy)), hn::Eq(nearest, s)};
 }
 
-/// Which of sixteen values are this one: a bit each.
-HWY_INLINE std::uint32_t bits_of(const Lanes<std::uint32_t>& values, std::uint32_t value) {
-    std::uint32_t all = 0;
-    for (int i = 0; i < kLanes; i += static_cast<int>(hn::MaxLanes(kFloats))) {
-        std::uint8_t bytes[8] = {};
-        hn::StoreMaskBits(kNumbers,
-                          hn::Eq(hn::Load(kNumbers, values.data() + i), hn::Set(kNumbers, value)),
-                          bytes);
-        all |= (static_cast<std::uint32_t>(bytes[0]) | static_cast<std::uint32_t>(bytes[1]) << 8U)
-               << i;
+using Row = hn::FixedTag<std::uint32_t, kBlockSide>;
+constexpr Row kRow;
+
+std::uint32_t find_starts_lanes(const Lanes<std::uint32_t>& values, std::uint32_t none) {
+    const auto nothing = hn::Set(kRow, none);
+    const auto first = hn::FirstN(kRow, 1);
+    auto above = nothing;
+    std::uint32_t starts = 0;
+    for (int i = 0; i < kLanes; i += kBlockSide) {
+        const auto row = hn::Load(kRow, values.data() + i);
+        const auto before = hn::IfThenElse(first, nothing, hn::Shuffle2103(row));
+        const auto repeats =
+            hn::Or(hn::Or(hn::Eq(row, before), hn::Eq(row, above)), hn::Eq(row, nothing));
+        std::uint8_t bits[8] = {};
+        hn::StoreMaskBits(kRow, repeats, bits);
+        starts |= (~static_cast<std::uint32_t>(bits[0]) & 0xFU) << i;
+        above = row;
     }
-    return all;
+    return starts;
 }
 
-std::size_t find_distinct_lanes(const Lanes<std::uint32_t>& values, std::uint32_t none,
-                                Lanes<std::uint32_t>& distinct) {
-    constexpr std::uint32_t kAll = (1U << kLanes) - 1;
-    int count = 0;
-    for (std::uint32_t rest = kAll & ~bits_of(values, none); rest != 0;) {
-        const std::uint32_t value = values[std::countr_zero(rest)];
-        distinct[count++] = value;
-        rest &= ~bits_of(values, value);
+int count_changes_lanes(const Lanes<std::uint32_t>& objects,
+                        const Lanes<std::uint32_t>& primitives) {
+    const auto none = hn::Set(kRow, kNoObject);
+    const auto before_last = hn::FirstN(kRow, kBlockSide - 1);
+    auto changes = hn::Zero(kRow);
+    const auto count = [&](auto object, auto primitive, auto other_object,
+                           auto other_primitive) HWY_ATTR {
+        const auto alike = hn::And(hn::Eq(object, other_object), hn::Ne(object, none));
+        return hn::VecFromMask(kRow, hn::And(alike, hn::Ne(primitive, other_primitive)));
+    };
+    auto object = hn::Load(kRow, objects.data());
+    auto primitive = hn::Load(kRow, primitives.data());
+    for (int i = 0;; i += kBlockSide) {
+        const auto right =
+            count(object, primitive, hn::Shuffle0321(object), hn::Shuffle0321(primitive));
+        changes = hn::Sub(changes, hn::IfThenElseZero(before_last, right));
+        if (i + kBlockSide == kLanes) break;
+        const auto object_below = hn::Load(kRow, objects.data() + i + kBlockSide);
+        const auto primitive_below = hn::Load(kRow, primitives.data() + i + kBlockSide);
+        changes = hn::Sub(changes, count(object, primitive, object_below, primitive_below));
+        object = object_below;
+        primitive = primitive_below;
     }
-    return static_cast<std::size_t>(count);
+    return static_cast<int>(hn::GetLane(hn::SumOfLanes(kRow, changes)));
 }
 
-void find_nearest_lanes(std::span<const FaceEdge> edges, float x, float y, float reach,
-                        NearestEdges& nearest, Lanes<float>& vx, Lanes<float>& vy) {
-    static_assert(sizeof(FaceEdge) == 8 * sizeof(float));
+void find_nearest_lanes(std::span<const ScreenEdge> edges, std::span<const SeenFace> faces, float x,
+                        float y, float reach, NearestEdges& nearest, Lanes<float>& vx,
+                        Lanes<float>& vy) {
     alignas(64) float offset_x[kLanes];
     alignas(64) float offset_y[kLanes];
     for (int i = 0; i < kLanes; ++i) {
@@ -80,37 +99,42 @@ void find_nearest_lanes(std::span<const FaceEdge> edges, float x, float y, float
         const Number py = hn::Load(kFloats, offset_y + i);
         const auto triangle = hn::Load(kNumbers, nearest.triangle.data() + i);
         Number least = set(kInfinity);
-        auto winner = hn::Zero(kIndices);
-        std::int32_t offset = 0;
-        for (const FaceEdge& face : edges) {
-            const ScreenEdge& e = face.edge;
-            const Approach to = approach(px, py, set(e.a.x), set(e.a.y), set(e.along.x),
-                                         set(e.along.y), set(e.length));
-            const auto own = hn::Lt(hn::Sub(triangle, hn::Set(kNumbers, face.begin)),
-                                    hn::Set(kNumbers, face.end - face.begin));
-            const auto better = hn::And(hn::RebindMask(kFloats, own), hn::Lt(to.squared, least));
-            least = hn::IfThenElse(better, to.squared, least);
-            winner =
-                hn::IfThenElse(hn::RebindMask(kIndices, better), hn::Set(kIndices, offset), winner);
-            offset += 8;
+        Number to_x = hn::Zero(kFloats);
+        Number to_y = to_x;
+        Number along_x = set(1.0F);  // any normal will do where there is no edge
+        Number along_y = to_x;
+        Number t = to_x;
+        auto inside = hn::Eq(least, least);
+        for (const SeenFace& face : faces) {
+            const auto own =
+                hn::RebindMask(kFloats, hn::Lt(hn::Sub(triangle, hn::Set(kNumbers, face.begin)),
+                                               hn::Set(kNumbers, face.end - face.begin)));
+            for (std::uint32_t k = face.first; k < face.first + face.count; ++k) {
+                const ScreenEdge& e = edges[k];
+                const Number ux = set(e.along.x);
+                const Number uy = set(e.along.y);
+                const Approach to = approach(px, py, set(e.a.x), set(e.a.y), ux, uy, set(e.length));
+                const auto better = hn::And(own, hn::Lt(to.squared, least));
+                least = hn::IfThenElse(better, to.squared, least);
+                to_x = hn::IfThenElse(better, to.vx, to_x);
+                to_y = hn::IfThenElse(better, to.vy, to_y);
+                along_x = hn::IfThenElse(better, ux, along_x);
+                along_y = hn::IfThenElse(better, uy, along_y);
+                t = hn::IfThenElse(better, set(e.t), t);
+                inside = hn::Or(hn::And(better, to.inside), hn::AndNot(better, inside));
+            }
         }
-        const auto* base = reinterpret_cast<const float*>(edges.data());
-        const auto pick = [&](int field)
-                              HWY_ATTR { return hn::GatherIndex(kFloats, base + field, winner); };
-        const Number ux = pick(2);
-        const Number uy = pick(3);
-        const Approach to = approach(px, py, pick(0), pick(1), ux, uy, pick(4));
         const Number distance = hn::Sqrt(least);
         const Number inverse = hn::Div(set(1.0F), hn::Max(distance, set(1e-6F)));
         const auto store = [i](Number value, Lanes<float>& lanes)
                                HWY_ATTR { hn::Store(value, kFloats, lanes.data() + i); };
-        store(hn::IfThenElse(to.inside, hn::Neg(uy), hn::Mul(to.vx, inverse)), nearest.nx);
-        store(hn::IfThenElse(to.inside, ux, hn::Mul(to.vy, inverse)), nearest.ny);
-        store(pick(5), nearest.t);
+        store(hn::IfThenElse(inside, hn::Neg(along_y), hn::Mul(to_x, inverse)), nearest.nx);
+        store(hn::IfThenElse(inside, along_x, hn::Mul(to_y, inverse)), nearest.ny);
+        store(t, nearest.t);
         store(hn::IfThenElse(hn::Lt(distance, set(reach)), distance, set(kInfinity)),
               nearest.distance);
-        store(to.vx, vx);
-        store(to.vy, vy);
+        store(to_x, vx);
+        store(to_y, vy);
     }
 }
 
@@ -121,17 +145,21 @@ HWY_AFTER_NAMESPACE();
 
 namespace ink {
 
-HWY_EXPORT(find_distinct_lanes);
+HWY_EXPORT(find_starts_lanes);
+HWY_EXPORT(count_changes_lanes);
 HWY_EXPORT(find_nearest_lanes);
 
-std::size_t find_distinct(const Lanes<std::uint32_t>& values, std::uint32_t none,
-                          Lanes<std::uint32_t>& distinct) {
-    return HWY_DYNAMIC_DISPATCH(find_distinct_lanes)(values, none, distinct);
+std::uint32_t find_starts(const Lanes<std::uint32_t>& values, std::uint32_t none) {
+    return HWY_DYNAMIC_DISPATCH(find_starts_lanes)(values, none);
 }
 
-void find_nearest(std::span<const FaceEdge> edges, float x, float y, float reach,
-                  NearestEdges& nearest, Lanes<float>& vx, Lanes<float>& vy) {
-    HWY_DYNAMIC_DISPATCH(find_nearest_lanes)(edges, x, y, reach, nearest, vx, vy);
+int count_changes(const Lanes<std::uint32_t>& objects, const Lanes<std::uint32_t>& primitives) {
+    return HWY_DYNAMIC_DISPATCH(count_changes_lanes)(objects, primitives);
+}
+
+void find_nearest(std::span<const ScreenEdge> edges, std::span<const SeenFace> faces, float x,
+                  float y, float reach, NearestEdges& nearest, Lanes<float>& vx, Lanes<float>& vy) {
+    HWY_DYNAMIC_DISPATCH(find_nearest_lanes)(edges, faces, x, y, reach, nearest, vx, vy);
 }
 
 }  // namespace ink
