@@ -322,6 +322,52 @@ TEST(NearJunctions, CloseWhatIsSeenThroughAHoleOfHalfAPixel) {
     EXPECT_NEAR(length_of(graph.chains[0]), 12.0, 0.1);
 }
 
+namespace {
+
+/// Once round an ellipse, with what is in front outside or inside.
+std::vector<Segment> ellipse(Vec2f radii, bool hole) {
+    constexpr int kCount = 32;
+    std::vector<Segment> segments;
+    const auto at = [&](int k) {
+        const double angle = 2.0 * std::numbers::pi * (k % kCount) / kCount;
+        return Vec2f{9.6F + radii.x * static_cast<float>(std::cos(angle)),
+                     7.3F + radii.y * static_cast<float>(std::sin(angle))};
+    };
+    for (int k = 0; k < kCount; ++k) {
+        // Clockwise on the screen: the inside is on the right.
+        Segment piece = hole ? segment(at(k), at(k + 1), 1, 0) : segment(at(k), at(k + 1), 0, 1);
+        piece.left_in_front = piece.left_in_front_at_b = hole;
+        segments.push_back(piece);
+    }
+    return segments;
+}
+
+}  // namespace
+
+TEST(Pinholes, AreNoLinesIfNarrowerThanAPixel) {
+    EXPECT_EQ(chain_lines(ellipse({0.4F, 0.4F}, true), 1.0F, 1).chains.size(), 0U);
+    EXPECT_EQ(chain_lines(ellipse({0.6F, 0.6F}, true), 1.0F, 1).chains.size(), 1U);
+    // A slit, whose width counts.
+    EXPECT_EQ(chain_lines(ellipse({1.5F, 0.2F}, true), 1.0F, 1).chains.size(), 0U);
+    EXPECT_GE(chain_lines(ellipse({4.0F, 0.2F}, true), 1.0F, 1).chains.size(), 1U);
+}
+
+TEST(Pinholes, AreNotThingsAsSmall) {
+    EXPECT_EQ(chain_lines(ellipse({0.2F, 0.2F}, false), 1.0F, 1).chains.size(), 1U);
+}
+
+TEST(NearJunctions, AreOneWhateverTheWayBetweenThem) {
+    // Its ends are 0.9 pixels apart, the way is 1.16 pixels long: a lattice sees more or less of
+    // the bend.
+    std::vector<Segment> segments = two_tees(8.2F, 9.1F);
+    for (Segment& piece : segments) {
+        for (Vec2f* end : {&piece.a, &piece.b}) {
+            if (*end == Vec2f{8.5F, 1}) *end = {8.5F, 1.35F};
+        }
+    }
+    EXPECT_EQ(chain_lines(segments, 1.0F, 1).chains.size(), 4U);
+}
+
 // Corners
 
 TEST(Corners, SplitAClosedLineIntoItsSides) {

@@ -154,6 +154,29 @@ TEST(LineArt, OfManySpheresHardlyChangesWithTheLattice) {
     }
 }
 
+TEST(LineArt, HasNoPinholesWhereTheHoleOfATorusCloses) {
+    Settings settings = picture(512);
+    settings.fill = Fill::none;
+    settings.view.look_at = Vec3d{0, 0, 0};
+    const auto counts = [&](Vec3d axis, double radius, double tube, Vec3d eye) {
+        const Scene scene({glyphs({GlyphKind::torus, static_cast<float>(tube / radius)},
+                                  {placement_about({}, axis, radius)})});
+        settings.view.eye = eye;
+        std::vector<std::size_t> found;
+        for (const int lattice : {1, 3}) {
+            settings.lattice = lattice;
+            found.push_back(draw(scene, settings).art.chains.size());
+        }
+        return found;
+    };
+    const auto first = counts({0.72754, -0.659394, 0.189434}, 0.676524, 0.247692,
+                              {-0.100538, 3.212086, -7.326144});
+    EXPECT_EQ(first[0], first[1]);
+    const auto second =
+        counts({0.965511, 0.188308, 0.17980}, 0.893427, 0.267552, {-2.845025, 5.958366, -4.517046});
+    EXPECT_EQ(second[0], second[1]);
+}
+
 TEST(LineArt, OfABoxIsSplitAtTheCornersOfItsOutline) {
     // Three faces show: three creases, and six sides of the outline, three of whose corners are no
     // junctions.

@@ -12,7 +12,9 @@ ChainGraph chain_lines(std::span<const Segment> segments, float spacing, int thr
     steady_types(graph);
     ChainedWays lines = chain_ways(graph);
     place_junctions(lines.graph, spacing);
-    if (merge_near_junctions(graph, lines)) {
+    // Where many lie close to each other, some are near only once others are one.
+    constexpr int kRounds = 3;
+    for (int round = 0; round < kRounds && merge_near_junctions(graph, lines); ++round) {
         steady_types(graph);
         lines = chain_ways(graph);
     }

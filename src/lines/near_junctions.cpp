@@ -1,6 +1,7 @@
 #include "lines/near_junctions.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <numeric>
@@ -16,6 +17,34 @@ namespace {
 /// finds as many of the chains that are longer as a finer one does, of those that are shorter half
 /// (haemoglobin at 1024 x 1024).
 constexpr double kNear = 1.0;
+
+/// The way from one to the other, in distances of kNear: it may bend, but not enclose a thing.
+constexpr double kLongestWay = 1.5;
+
+/// What is seen through a hole narrower than this, in pixels, falls between the points of a lattice
+/// of one point a pixel or not, by chance, and a slit shows as a row of holes. A round hole counts
+/// half its diameter.
+constexpr double kNarrow = 0.5;
+/// Longer slits stay, in pixels round.
+constexpr double kLongestRound = 8.0;
+
+/// Whether a chain is the rim of a narrow hole in what is in front.
+bool is_pinhole(const Chain& chain) {
+    if (!chain.closed || chain.left == chain.right || chain.type != LineType::silhouette) {
+        return false;
+    }
+    const double round = length_of(chain);
+    if (round >= kLongestRound) return false;
+    double twice_area = 0.0;
+    const Vec2d origin = to_double(chain.points.front());
+    for (std::size_t k = 1; k + 1 < chain.points.size(); ++k) {
+        twice_area +=
+            cross(to_double(chain.points[k]) - origin, to_double(chain.points[k + 1]) - origin);
+    }
+    // Where y points down, a positive area lies on the right.
+    const bool hole = chain.left_in_front == (twice_area > 0.0);
+    return hole && std::abs(twice_area) < kNarrow * round;
+}
 
 /// Sets of vertices, and the box that each lies in.
 class VertexClusters {
@@ -109,6 +138,7 @@ class JunctionMerger {
             ++degrees[chain.last_vertex];
         }
         for (std::uint32_t k = 0; k < gone_.size(); ++k) {
+            if (is_pinhole(chain(k))) gone_[k] = 1;
             // What ends in the open is drawn by pixels as well.
             const bool loose =
                 degrees[chain(k).first_vertex] < 2 || degrees[chain(k).last_vertex] < 2;
@@ -121,7 +151,7 @@ class JunctionMerger {
             // There and back is twice as long.
             const bool loop =
                 clusters_.find(chain(k).first_vertex) == clusters_.find(chain(k).last_vertex);
-            if (loop || size < kNear) {
+            if (loop || size < kLongestWay * kNear) {
                 gone_[k] = clusters_.join(chain(k).first_vertex, chain(k).last_vertex) ? 1 : 0;
             }
         }
