@@ -177,6 +177,29 @@ TEST(LineArt, HasNoPinholesWhereTheHoleOfATorusCloses) {
     EXPECT_EQ(second[0], second[1]);
 }
 
+TEST(LineArt, EndsOutsideThePictureInOnePlaceForEveryOddLattice) {
+    // A circle that reaches 3.7 pixels beyond the picture on each of its sides.
+    Settings settings = picture(64);
+    settings.fill = Fill::none;
+    settings.view.view = View::front;
+    settings.view.eye = Vec3d{0, 0, 100};
+    settings.view.look_at = Vec3d{0, 0, 0};
+    settings.view.orthographic = 10.0;
+    const Scene scene({sphere_object({{{0, 0, 0}, 35.7F * 10.0F / 64.0F}})});
+    for (const int lattice : {1, 3, 5}) {
+        settings.lattice = lattice;
+        const LineArt art = draw(scene, settings).art;
+        EXPECT_EQ(art.chains.size(), 4U) << lattice;
+        for (const Chain& chain : art.chains) {
+            for (const Vec2f end : {chain.points.front(), chain.points.back()}) {
+                EXPECT_NEAR(
+                    static_cast<double>(std::max(std::abs(end.x - 32), std::abs(end.y - 32))), 35.5,
+                    1e-3);
+            }
+        }
+    }
+}
+
 TEST(LineArt, OfABoxIsSplitAtTheCornersOfItsOutline) {
     // Three faces show: three creases, and six sides of the outline, three of whose corners are no
     // junctions.

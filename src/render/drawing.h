@@ -23,8 +23,8 @@ struct Drawing {
     bool tones = false;
     LineThinning thinning;
     float spacing = 1.0F;  ///< of the lattice, pixels
-    /// Corners of the rectangle that was searched, pixels: beyond the picture by what lines reach
-    /// in from there.
+    /// Corners of the rectangle that all of them lie in, pixels: beyond the picture by what lines
+    /// reach in from there.
     Vec2f lower, upper;
 };
 

@@ -21,8 +21,10 @@ void keep_lines(const Edges& edges, const std::vector<TileLines>& found,
     const Vec2f half{0.5F * drawing.spacing, 0.5F * drawing.spacing};
     const Tile& first = edges.search_tiles.front();
     const Tile& last = edges.search_tiles.back();
-    drawing.lower = Vec2f{static_cast<float>(first.x0), static_cast<float>(first.y0)} + half;
-    drawing.upper = Vec2f{static_cast<float>(last.x1), static_cast<float>(last.y1)} + half;
+    // For any odd lattice the same: half a pixel within what was searched.
+    const Vec2f inside = Vec2f{0.5F, 0.5F} + (edges.q % 2 == 0 ? half : Vec2f{});
+    drawing.lower = Vec2f{static_cast<float>(first.x0), static_cast<float>(first.y0)} + inside;
+    drawing.upper = Vec2f{static_cast<float>(last.x1), static_cast<float>(last.y1)} - inside;
     drawing.segments.clear();
     for (const TileLines& tile : found) {
         for (Segment segment : tile.segments) {
@@ -48,7 +50,13 @@ void keep_lines(const Edges& edges, const std::vector<TileLines>& found,
     for (const std::vector<Segment>& tile : hidden) {
         drawing.hidden.insert(drawing.hidden.end(), tile.begin(), tile.end());
     }
+    const auto is_outside = [&](const Segment& line) {
+        const Vec2f middle = (line.a + line.b) * 0.5F;
+        return middle.x < drawing.lower.x || middle.y < drawing.lower.y ||
+               middle.x > drawing.upper.x || middle.y > drawing.upper.y;
+    };
     for (std::vector<Segment>* lines : {&drawing.segments, &drawing.hidden}) {
+        std::erase_if(*lines, is_outside);
         for (Segment& line : *lines) {
             line.t = edges.pipeline.camera.distance_from_eye(line.a, line.t) * edges.pipeline.unit;
         }
