@@ -12,7 +12,7 @@ namespace ink {
 
 namespace {
 
-constexpr std::size_t kMostPointsInPixel = 16;  // --lattice 4
+constexpr std::size_t kMostPointsInPixel = std::size_t{kMostLatticePoints} * kMostLatticePoints;
 
 ScreenBox screen_box(const Block& block, float spacing) {
     const auto left = static_cast<float>(block.x);
