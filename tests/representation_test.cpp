@@ -198,7 +198,8 @@ TEST(Bonds, LinkNeitherHydrogensNorAtomsInOnePlace) {
     Molecule m;
     m.positions = {{0, 0, 0}, {0.7, 0, 0}, {0, 0.96, 0}, {0, 0.96, 0}};
     m.elements = {1, 1, 8, 8};
-    EXPECT_EQ(bonds_by_distance(m.positions, m.elements), (std::vector<Bond>{{0, 2}, {0, 3}, {1, 2}, {1, 3}}));
+    EXPECT_EQ(bonds_by_distance(m.positions, m.elements),
+              (std::vector<Bond>{{0, 2}, {0, 3}, {1, 2}, {1, 3}}));
 }
 
 TEST(Bonds, TakeNoTimeWithoutEndWhereAllAtomsCrowdTogether) {

@@ -169,8 +169,8 @@ bool Surfaces::smooth_between(const HitPacket& a, int lane_a, const Vec3f* at_a,
     const auto* mesh = std::get_if<Mesh>(&object.shape);
     if (primitive_a == primitive_b) {
         if (const auto* glyphs = std::get_if<Glyphs>(&object.shape)) {
-            return smooth_glyph(glyphs->shape, glyphs->at(primitive_a),
-                                hit_normal(a, lane_a), at_a, hit_normal(b, lane_b), at_b);
+            return smooth_glyph(glyphs->shape, glyphs->at(primitive_a), hit_normal(a, lane_a), at_a,
+                                hit_normal(b, lane_b), at_b);
         }
         return mesh != nullptr || std::holds_alternative<Spheres>(object.shape);
     }
