@@ -96,6 +96,16 @@ quit() {
     viewer=
     [ ! -s log ] || fail "$1: it complained"
 }
+# Takes the display away; the viewer must end with a message.
+lose_display() {
+    kill "$server"
+    status=0
+    wait "$viewer" || status=$?
+    viewer=
+    server=
+    [ "$status" = 1 ] || fail "without its display it ended with status $status"
+    grep -q 'display is gone' log || fail "no word about the lost display"
+}
 complains() {  # in red, in the bar below the picture, in a window of this height
     shot now.png
     [ "$(convert now.png -crop "500x28+0+$(($1 - 28))" -fuzz 20% -fill white +opaque '#b81414' \

@@ -83,11 +83,5 @@ grep -q 'line-width' log || fail "no word about the wrong flag"
 # A display that dies takes the viewer along, with a message and no more.
 start
 until_ "no window" has_window Inktrace
-kill "$server"
-status=0
-wait "$viewer" || status=$?
-viewer=
-server=
-[ "$status" = 1 ] || fail "without its display it ended with status $status"
-grep -q 'display is gone' log || fail "no word about the lost display"
+lose_display
 echo "passed"

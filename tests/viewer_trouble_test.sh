@@ -116,11 +116,5 @@ quit "a dense screen"
 start molecule.pdb $slow
 until_ "no window" has_window molecule.pdb
 until_ "the window shows nothing" shows_colors 900x900+0+0 20
-kill "$server"
-status=0
-wait "$viewer" || status=$?
-viewer=
-server=
-[ "$status" = 1 ] || fail "without its display it ended with status $status"
-grep -q 'display is gone' log || fail "no word about the lost display"
+lose_display
 echo "passed"

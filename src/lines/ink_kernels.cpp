@@ -1,6 +1,5 @@
 #include "lines/ink_kernels.h"
 
-#include <algorithm>
 #include <cmath>
 
 // Everything between the two namespace macros is built once for each instruction set.
@@ -8,6 +7,8 @@
 #define HWY_TARGET_INCLUDE "lines/ink_kernels.cpp"
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
+
+#include "lines/coverage_lanes-inl.h"
 
 #ifndef INK_BLOCK_OFFSETS
 #define INK_BLOCK_OFFSETS
@@ -32,41 +33,6 @@ HWY_BEFORE_NAMESPACE();
 namespace ink::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
-
-using Floats = hn::CappedTag<float, kLanes>;
-using Number = hn::Vec<Floats>;
-constexpr Floats kFloats;
-constexpr int kStep = static_cast<int>(hn::MaxLanes(Floats()));
-
-HWY_INLINE Number set(float value) { return hn::Set(kFloats, value); }
-HWY_INLINE Number load(const Lanes<float>& lanes, int first) {
-    return hn::Load(kFloats, lanes.data() + first);
-}
-
-/// square_coverage (lines/coverage.h) in lanes.
-class SquareCoverageLanes {
-  public:
-    HWY_INLINE explicit SquareCoverageLanes(Vec2f normal) {
-        const float wide = std::max(std::abs(normal.x), std::abs(normal.y));
-        const float narrow = std::min(std::abs(normal.x), std::abs(normal.y));
-        reach_ = set(0.5F * (wide + narrow));
-        flat_ = set(0.5F * (wide - narrow));
-        slope_ = set(1.0F / wide);
-        corner_ = set(1.0F / (2.0F * std::max(wide * narrow, 1e-6F)));
-    }
-    HWY_INLINE Number operator()(Number inside) const {
-        const Number off = hn::Min(hn::Abs(inside), reach_);
-        const Number rest = hn::Sub(reach_, off);
-        const Number flat = hn::Sub(set(0.5F), hn::Mul(off, slope_));
-        const Number corner = hn::Mul(hn::Mul(rest, rest), corner_);
-        const Number outer = hn::IfThenElse(hn::Le(off, flat_), flat, corner);
-        const auto is_inside = hn::Ge(inside, hn::Zero(kFloats));
-        return hn::IfThenElse(is_inside, hn::Sub(set(1.0F), outer), outer);
-    }
-
-  private:
-    Number reach_, flat_, slope_, corner_;
-};
 
 /// Distances from a band's middle line.
 class BandFrame {
@@ -132,7 +98,7 @@ HWY_INLINE void for_each_block(const Band& band, const BlockRange& range, const 
 /// A band that is `kWide` reaches beyond every pixel that its far edge could cut.
 template <bool kWide>
 HWY_INLINE void draw_blocks(const Band& band, const BlockRange& range, const InkPlanes& planes) {
-    const SquareCoverageLanes coverage({band.along.y, band.along.x});
+    const SquareCoverage coverage(set(band.along.y), set(band.along.x));
     const BandFrame frame(band);
     const Number half = set(band.half);
     const Number strength = set(band.strength);

@@ -6,48 +6,15 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "lines/coverage_lanes-inl.h"
+
 HWY_BEFORE_NAMESPACE();
 namespace ink::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-using Floats = hn::CappedTag<float, kLanes>;
 using Integers = hn::RebindToSigned<Floats>;
-using Number = hn::Vec<Floats>;
-constexpr Floats kFloats;
 constexpr Integers kIntegers;
-constexpr int kStep = static_cast<int>(hn::MaxLanes(Floats()));
-
-HWY_INLINE Number set(float value) { return hn::Set(kFloats, value); }
-HWY_INLINE Number load(const Lanes<float>& lanes, int first) {
-    return hn::Load(kFloats, lanes.data() + first);
-}
-
-/// square_coverage (lines/coverage.h), a normal a lane.
-class SquareCoverage {
-  public:
-    HWY_INLINE SquareCoverage(Number nx, Number ny) {
-        const Number wide = hn::Max(hn::Abs(nx), hn::Abs(ny));
-        const Number narrow = hn::Min(hn::Abs(nx), hn::Abs(ny));
-        const Number half = set(0.5F);
-        reach_ = hn::Mul(half, hn::Add(wide, narrow));
-        flat_ = hn::Mul(half, hn::Sub(wide, narrow));
-        slope_ = hn::Div(set(1.0F), wide);
-        corner_ = hn::Div(half, hn::Max(hn::Mul(wide, narrow), set(1e-6F)));
-    }
-    HWY_INLINE Number operator()(Number inside) const {
-        const Number off = hn::Min(hn::Abs(inside), reach_);
-        const Number rest = hn::Sub(reach_, off);
-        const Number flat = hn::Sub(set(0.5F), hn::Mul(off, slope_));
-        const Number corner = hn::Mul(hn::Mul(rest, rest), corner_);
-        const Number outer = hn::IfThenElse(hn::Le(off, flat_), flat, corner);
-        const auto is_inside = hn::Ge(inside, hn::Zero(kFloats));
-        return hn::IfThenElse(is_inside, hn::Sub(set(1.0F), outer), outer);
-    }
-
-  private:
-    Number reach_, flat_, slope_, corner_;
-};
 
 HWY_INLINE void find_shares(const SegmentEnds& segments, float q, int i, CornerShares& shares) {
     const Number zero = hn::Zero(kFloats);

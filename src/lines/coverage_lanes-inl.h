@@ -1,0 +1,58 @@
+// What the kernels of lines share; included once for each instruction set.
+
+#include "base/lanes.h"
+
+#if defined(INKTRACE_COVERAGE_LANES_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef INKTRACE_COVERAGE_LANES_INL_H
+#undef INKTRACE_COVERAGE_LANES_INL_H
+#else
+#define INKTRACE_COVERAGE_LANES_INL_H
+#endif
+
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace ink::HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+using Floats = hn::CappedTag<float, kLanes>;
+using Number = hn::Vec<Floats>;
+constexpr Floats kFloats;
+constexpr int kStep = static_cast<int>(hn::MaxLanes(Floats()));
+
+HWY_INLINE Number set(float value) { return hn::Set(kFloats, value); }
+HWY_INLINE Number load(const Lanes<float>& lanes, int first) {
+    return hn::Load(kFloats, lanes.data() + first);
+}
+
+/// square_coverage (lines/coverage.h), a normal a lane.
+class SquareCoverage {
+  public:
+    HWY_INLINE SquareCoverage(Number nx, Number ny) {
+        const Number wide = hn::Max(hn::Abs(nx), hn::Abs(ny));
+        const Number narrow = hn::Min(hn::Abs(nx), hn::Abs(ny));
+        const Number half = set(0.5F);
+        reach_ = hn::Mul(half, hn::Add(wide, narrow));
+        flat_ = hn::Mul(half, hn::Sub(wide, narrow));
+        slope_ = hn::Div(set(1.0F), wide);
+        corner_ = hn::Div(half, hn::Max(hn::Mul(wide, narrow), set(1e-6F)));
+    }
+    HWY_INLINE Number operator()(Number inside) const {
+        const Number off = hn::Min(hn::Abs(inside), reach_);
+        const Number rest = hn::Sub(reach_, off);
+        const Number flat = hn::Sub(set(0.5F), hn::Mul(off, slope_));
+        const Number corner = hn::Mul(hn::Mul(rest, rest), corner_);
+        const Number outer = hn::IfThenElse(hn::Le(off, flat_), flat, corner);
+        const auto is_inside = hn::Ge(inside, hn::Zero(kFloats));
+        return hn::IfThenElse(is_inside, hn::Sub(set(1.0F), outer), outer);
+    }
+
+  private:
+    Number reach_, flat_, slope_, corner_;
+};
+
+}  // namespace ink::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif
