@@ -13,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "accel/candidates.h"
 #include "camera/camera.h"
 #include "scenes.h"
 
@@ -673,6 +674,52 @@ TEST(Coincidence, PrefersTheFirstOfBoxesThatFillTheSamePlace) {
     expect_first_wins(Seen({solid, object}, oblique_view(), {512, 512}), 1);
 }
 
+TEST(Candidates, AreTheSameInBandsAndInTheTree) {
+    const Scene scene(random_objects(11, 3000, 3000));
+    const Clusters clusters(scene);
+    const Camera camera(scene, oblique_view(), {512, 384});
+    const Projection& projection = camera.projection();
+    const BoundsPyramid pyramid(clusters, Basis(projection));
+    const ClusterBands bands(pyramid, clusters.clusters.size(), projection.centre);
+    Candidates sorted(pyramid, &bands);
+    Candidates searched(pyramid, nullptr);
+    std::mt19937 random(5);
+    std::uniform_real_distribution<float> place(-300.0F, 300.0F);
+    std::exponential_distribution<float> size(1.0F / 30.0F);
+    std::size_t met = 0;
+    for (int n = 0; n < 500; ++n) {
+        Window window{place(random), 0, place(random), 0, kInfinity};
+        window.right = window.left + size(random);
+        window.bottom = window.top + size(random);
+        std::vector<std::uint32_t> found[2];
+        for (Candidates* candidates : {&sorted, &searched}) {
+            candidates->enter(window);
+            while (candidates->find_more(kInfinity)) {
+            }
+            for (std::size_t i = 0; i < candidates->count(); ++i) {
+                found[candidates == &sorted ? 0 : 1].push_back(candidates->cluster(i));
+            }
+            EXPECT_TRUE(candidates->reach(window) || candidates->count() == 0);
+        }
+        EXPECT_EQ(found[0], found[1]);
+        met += found[0].size();
+    }
+    EXPECT_GT(met, 5000U);
+}
+
+TEST(Candidates, ReachNoBoxBetweenTwoObjects) {
+    const Scene scene({sphere_object({{{-1, 0, 0}, 0.1F}}), sphere_object({{{1, 0, 0}, 0.1F}})});
+    const Clusters clusters(scene);
+    const Camera camera(scene, {}, {256, 256});
+    const Projection& projection = camera.projection();
+    const BoundsPyramid pyramid(clusters, Basis(projection));
+    const ClusterBands bands(pyramid, clusters.clusters.size(), projection.centre);
+    const Candidates candidates(pyramid, &bands);
+    EXPECT_TRUE(candidates.reach({-128, 0, -2, 2, kInfinity}));
+    EXPECT_TRUE(candidates.reach({0, 128, -2, 2, kInfinity}));
+    EXPECT_FALSE(candidates.reach({-8, 8, -8, 8, kInfinity}));
+}
+
 TEST(SceneTracer, LeavesPixelsThatAreFullOfPrimitivesToEmbree) {
     std::mt19937 random(16);
     std::vector<Sphere> dust;
@@ -681,7 +728,7 @@ TEST(SceneTracer, LeavesPixelsThatAreFullOfPrimitivesToEmbree) {
     const Clusters clusters(scene);
     const auto suits = [&](int side) {
         const Camera camera(scene, {}, {side, side});
-        return suits_screen_tracer(clusters, camera.projection());
+        return make_suited_screen_tracer(clusters, camera.projection()) != nullptr;
     };
     EXPECT_TRUE(suits(1024));
     EXPECT_FALSE(suits(16));

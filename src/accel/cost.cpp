@@ -50,7 +50,7 @@ constexpr double kGlyphNs = 600.0;
 constexpr double kGlyphBytes = 160.0;
 
 /// Of more spheres and triangles than this, Embree traces pictures of usual sizes
-/// (suits_screen_tracer). Its hierarchy takes a primitive about so much.
+/// (make_suited_screen_tracer). Its hierarchy takes a primitive about so much.
 constexpr double kManyPrimitives = 2.0 * 1024.0 * 1024.0 * kLanes;
 constexpr double kEmbreeBytes = 36.0;
 constexpr double kEmbreeNs = 700.0;

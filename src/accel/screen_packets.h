@@ -25,6 +25,14 @@ struct BoundsPacket {
     Lanes<float> depth;  ///< nothing of it lies nearer
 
     static BoundsPacket none();
+    /// One of them to a place in another packet.
+    void copy(int lane, BoundsPacket& to, int to_lane) const {
+        to.left[to_lane] = left[lane];
+        to.right[to_lane] = right[lane];
+        to.top[to_lane] = top[lane];
+        to.bottom[to_lane] = bottom[lane];
+        to.depth[to_lane] = depth[lane];
+    }
 };
 
 /// A sphere as a camera sees it. With d = q - (u, v), it covers h = f - (a dx^2 + b dx dy + c dy^2)

@@ -5,10 +5,13 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
+#include <optional>
 #include <utility>
 #include <vector>
 
 #include "accel/bounds_pyramid.h"
+#include "accel/candidates.h"
+#include "accel/cluster_bands.h"
 #include "accel/screen_kernels.h"
 #include "accel/screen_packets.h"
 #include "accel/sphere_range.h"
@@ -20,12 +23,18 @@ namespace {
 /// What all tiles share.
 struct View {
     View(const Clusters& all, const Projection& seen_by)
-        : clusters(all), projection(seen_by), basis(seen_by), pyramid(all, basis) {}
+        : clusters(all), projection(seen_by), basis(seen_by), pyramid(all, basis) {
+        const std::size_t count = all.clusters.size();
+        if (count > 0 && count <= ClusterBands::kMost) {
+            bands.emplace(pyramid, count, seen_by.centre);
+        }
+    }
 
     const Clusters& clusters;
     Projection projection;
     Basis basis;
     BoundsPyramid pyramid;
+    std::optional<ClusterBands> bands;  ///< if there are not too many clusters
 
     Window window(const ScreenBox& box) const {
         const Vec2f centre = projection.centre;
@@ -33,138 +42,6 @@ struct View {
                 box.bottom - centre.y, kInfinity};
     }
 };
-
-/// The clusters that reach into a part of the screen, nearest first. They are found as far back as
-/// they are asked for: what lies behind all that is seen is never looked at.
-class Candidates {
-  public:
-    explicit Candidates(const View& view) : view_(view) {}
-
-    void enter(const Window& window);
-
-    /// Sixteen of them, of which only the last packet may have fewer.
-    std::size_t packets() const { return bounds_.size(); }
-    std::size_t count() const { return found_.size(); }
-    /// Finds another packet, if there is one that begins nearer than `farthest`.
-    bool find_more(float farthest);
-
-    const BoundsPacket& bounds(std::size_t packet) const { return bounds_[packet]; }
-    BoundsPacket& bounds(std::size_t packet) { return bounds_[packet]; }
-    float depth(std::size_t i) const { return found_[i].depth; }
-    std::uint32_t cluster(std::size_t i) const { return found_[i].index; }
-
-    /// False only if nothing reaches into the window.
-    bool reach(const Window& window) const {
-        return std::ranges::any_of(
-            coarse_, [&](const BoundsPacket& bounds) { return overlap(bounds, window) != 0; });
-    }
-
-  private:
-    /// A cluster (level 0), or a packet of the level below.
-    struct Node {
-        float depth;
-        std::uint32_t index;
-        int level;
-
-        /// Boxes before what is in them, so that the order of clusters is always the same.
-        bool comes_after(const Node& other) const {
-            if (depth != other.depth) return depth > other.depth;
-            if (level != other.level) return level < other.level;
-            return index > other.index;
-        }
-    };
-    static bool after(const Node& a, const Node& b) { return a.comes_after(b); }
-
-    template <class Found>
-    void open(int level, std::size_t packet, const Found& found) const;
-    void gather(int level, std::size_t packet);
-    bool next();
-
-    const View& view_;
-    Window window_{};
-    std::vector<Node> heap_;            ///< not opened yet
-    std::vector<Node> found_;           ///< clusters
-    std::vector<BoundsPacket> bounds_;  ///< of the clusters
-    std::vector<BoundsPacket> coarse_;  ///< of what the search began with
-    std::size_t coarse_count_ = 0;
-};
-
-void put(const BoundsPacket& from, int lane, std::size_t place, std::vector<BoundsPacket>& to) {
-    const int own = static_cast<int>(place % kLanes);
-    if (own == 0) to.push_back(BoundsPacket::none());
-    BoundsPacket& last = to.back();
-    last.left[own] = from.left[lane];
-    last.right[own] = from.right[lane];
-    last.top[own] = from.top[lane];
-    last.bottom[own] = from.bottom[lane];
-    last.depth[own] = from.depth[lane];
-}
-
-/// Calls `found(node, bounds, lane)` for what a packet holds and reaches into the window.
-template <class Found>
-void Candidates::open(int level, std::size_t packet, const Found& found) const {
-    const BoundsPacket& bounds = view_.pyramid.at(level, packet);
-    for (LaneBits lanes = overlap(bounds, window_); lanes != 0; lanes &= lanes - 1) {
-        const int lane = std::countr_zero(lanes);
-        const std::size_t child = packet * kLanes + static_cast<std::size_t>(lane);
-        found(Node{bounds.depth[lane], static_cast<std::uint32_t>(child), level}, bounds, lane);
-    }
-}
-
-void Candidates::enter(const Window& window) {
-    window_ = window;
-    heap_.clear();
-    found_.clear();
-    bounds_.clear();
-    coarse_.clear();
-    coarse_count_ = 0;
-    if (view_.pyramid.top() < 0) return;
-    gather(view_.pyramid.top(), 0);
-    std::ranges::make_heap(heap_, after);
-}
-
-/// Begins with boxes that are small on the screen, as long as there are not too many.
-void Candidates::gather(int level, std::size_t packet) {
-    constexpr float kSmall = 16.0F;  // pixels
-    constexpr std::size_t kMany = 512;
-    open(level, packet, [&](const Node& node, const BoundsPacket& bounds, int lane) {
-        const bool small = bounds.right[lane] - bounds.left[lane] < kSmall &&
-                           bounds.bottom[lane] - bounds.top[lane] < kSmall;
-        if (level > 0 && !small && heap_.size() < kMany) {
-            return gather(level - 1, node.index);
-        }
-        heap_.push_back(node);
-        put(bounds, lane, coarse_count_++, coarse_);
-    });
-}
-
-bool Candidates::find_more(float farthest) {
-    if (heap_.empty() || !(heap_.front().depth < farthest)) return false;
-    const std::size_t before = found_.size();
-    while (found_.size() < before + kLanes && next()) {
-    }
-    return found_.size() > before;
-}
-
-/// Finds the next cluster.
-bool Candidates::next() {
-    while (!heap_.empty()) {
-        std::ranges::pop_heap(heap_, after);
-        const Node node = heap_.back();
-        heap_.pop_back();
-        if (node.level == 0) {
-            put(view_.pyramid.at(0, node.index / kLanes), static_cast<int>(node.index % kLanes),
-                found_.size(), bounds_);
-            found_.push_back(node);
-            return true;
-        }
-        open(node.level - 1, node.index, [&](const Node& child, const BoundsPacket&, int) {
-            heap_.push_back(child);
-            std::ranges::push_heap(heap_, after);
-        });
-    }
-    return false;
-}
 
 /// What tracing a part of the screen took.
 struct ScreenEffort {
@@ -174,7 +51,8 @@ struct ScreenEffort {
 
 class ScreenTileTracer final : public TileTracer {
   public:
-    explicit ScreenTileTracer(const View& view) : view_(view), candidates_(view) {}
+    explicit ScreenTileTracer(const View& view)
+        : view_(view), candidates_(view.pyramid, view.bands ? &*view.bands : nullptr) {}
 
     void enter(const ScreenBox& area) override {
         candidates_.enter(view_.window(area));
@@ -458,16 +336,19 @@ bool ScreenFrameTracer::is_suited(const Window& part) const {
 
 }  // namespace
 
-bool suits_screen_tracer(const Clusters& clusters, const Projection& projection) {
+std::unique_ptr<FrameTracer> make_suited_screen_tracer(const Clusters& clusters,
+                                                       const Projection& projection) {
     constexpr std::size_t kFew = 1000;  // suit everything
-    if (clusters.clusters.size() <= kFew) return true;
+    if (clusters.clusters.size() <= kFew) return make_screen_tracer(clusters, projection);
     const Window part = covered(clusters, projection);
     // So many clusters a pixel never did.
     constexpr float kTooMany = 2.0F;
     const float pixels =
         std::max(part.right - part.left, 0.0F) * std::max(part.bottom - part.top, 0.0F);
-    if (static_cast<float>(clusters.clusters.size()) > kTooMany * pixels) return false;
-    return ScreenFrameTracer(clusters, projection).is_suited(part);
+    if (static_cast<float>(clusters.clusters.size()) > kTooMany * pixels) return nullptr;
+    auto tracer = std::make_unique<ScreenFrameTracer>(clusters, projection);
+    if (!tracer->is_suited(part)) return nullptr;
+    return tracer;
 }
 
 std::unique_ptr<FrameTracer> make_screen_tracer(const Clusters& clusters,

@@ -22,9 +22,10 @@ namespace ink {
 std::unique_ptr<FrameTracer> make_screen_tracer(const Clusters& clusters,
                                                 const Projection& projection);
 
-/// Whether that is likely to be faster than Embree, by the clusters that a few small squares of the
-/// picture take. Where a pixel sees through many small primitives, a hierarchy is better. It does
-/// not depend on tiles or threads: the hits of the two differ in their last digits.
-bool suits_screen_tracer(const Clusters& clusters, const Projection& projection);
+/// Null where that is likely to be slower than Embree, by the clusters that a few small squares of
+/// the picture take. Where a pixel sees through many small primitives, a hierarchy is better. The
+/// choice does not depend on tiles or threads: the hits of the two differ in their last digits.
+std::unique_ptr<FrameTracer> make_suited_screen_tracer(const Clusters& clusters,
+                                                       const Projection& projection);
 
 }  // namespace ink

@@ -149,11 +149,11 @@ class SceneTracer final : public Tracer {
 
     std::unique_ptr<FrameTracer> frame(const Projection& projection, int threads) const override {
         const auto objects = std::span(scene_.objects());
-        if (!projection.sees_all() || std::ranges::none_of(objects, on_screen) ||
-            !suits_screen_tracer(clusters_, projection)) {
+        if (!projection.sees_all() || std::ranges::none_of(objects, on_screen)) {
             return all_.get().frame(projection, threads);
         }
-        auto screen = make_screen_tracer(clusters_, projection);
+        auto screen = make_suited_screen_tracer(clusters_, projection);
+        if (!screen) return all_.get().frame(projection, threads);
         if (std::ranges::all_of(objects, on_screen)) return screen;
         return std::make_unique<MergedFrameTracer>(std::move(screen),
                                                    others_.get().frame(projection, threads));

@@ -67,7 +67,7 @@ struct Stencils {
     float ridge_reach = 0.0F;         ///< of the stencil that ridges are found by, pixels
     std::vector<Vec2f> ridge_points;  ///< of the stencil that ridges are found by
     std::optional<RidgeEstimator> ridge_estimator;
-    float reach = 1.0F;  ///< of a pixel's samples and their stencils, pixels
+    float reach = 0.0F;  ///< of the stencils of a pixel's samples beyond it, pixels
     bool outlines, creases, occlusions, ridges;  ///< which lines are wanted
     bool draw_lines;
     bool shaded;  ///< stencil anti-aliasing
@@ -364,10 +364,14 @@ void write_aovs(const Stencils& stencils, const Workspace& work, Vec2f offset) {
 /// and shaded as normal with colour c_s; its ray stencil is traced and gives the edge strength e_s;
 /// c_s is mixed with the line's colour by e_s; a pixel is the mean of its samples.
 void render_tile(const Stencils& stencils, Workspace& work, const Tile& tile) {
+    const float reach = std::max(stencils.reach, stencils.ridge_reach);
     // Blocks at the film's edge are whole.
-    const float reach = std::max(stencils.reach, stencils.ridge_reach) + kBlockSide;
+    const auto end = [](int first, int last) {
+        return static_cast<float>(first +
+                                  (last - first + kBlockSide - 1) / kBlockSide * kBlockSide);
+    };
     work.sampler.enter({static_cast<float>(tile.x0) - reach, static_cast<float>(tile.y0) - reach,
-                        static_cast<float>(tile.x1) + reach, static_cast<float>(tile.y1) + reach});
+                        end(tile.x0, tile.x1) + reach, end(tile.y0, tile.y1) + reach});
     sort_blocks(tile, work.sampler, stencils.reach, work.blocks, work.empty);
     for (const Block block : work.empty) {
         stencils.pipeline.film.put_background(block.x, block.y);

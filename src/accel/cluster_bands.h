@@ -1,0 +1,74 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "accel/bounds_pyramid.h"
+#include "accel/screen_kernels.h"
+
+namespace ink {
+
+/// All clusters of a picture, nearest first, and which of them reach into each of a few bands of
+/// columns and of rows: a bit a cluster. So those that reach into a part of the screen are found
+/// in order by a few words of bits, without sorting them for each part anew.
+class ClusterBands {
+  public:
+    /// More clusters than this are looked for in the tree of boxes: to project and sort all of them
+    /// would take longer than to find those that are seen.
+    static constexpr std::size_t kMost = 16384;
+
+    /// Of `count` clusters, whose bounds are level 0 of the pyramid. The picture reaches from
+    /// `-centre` to `centre`.
+    ClusterBands(const BoundsPyramid& pyramid, std::size_t count, Vec2f centre);
+
+    /// Sets a bit for each place in the order, 64 a word, whose cluster may reach into the window.
+    void find(const Window& window, std::vector<std::uint64_t>& places) const;
+    /// False only if no cluster reaches into the window.
+    bool reach(const Window& window) const { return cover_.meets(window); }
+
+    std::uint32_t cluster(std::size_t place) const { return order_[place]; }
+    /// Sixteen places a packet.
+    const BoundsPacket& bounds(std::size_t packet) const { return bounds_[packet]; }
+
+  private:
+    static constexpr int kBands = 64;
+
+    /// How a direction of the screen is cut into bands. What lies beyond belongs to the outermost.
+    struct Axis {
+        float from = 0.0F, scale = 0.0F;
+        int count = 1;
+        int band(float at) const {
+            const float place = (at - from) * scale;
+            return place > 0.0F ? static_cast<int>(std::min(place, static_cast<float>(count - 1)))
+                                : 0;
+        }
+    };
+    /// Which of the picture's cells anything reaches into, a bit a cell.
+    class Cover {
+      public:
+        explicit Cover(Vec2f centre);
+        void add(const Window& bounds);
+        bool meets(const Window& box) const;
+
+      private:
+        Axis columns_, rows_;
+        std::size_t words_;  ///< a row
+        std::vector<std::uint64_t> cells_;
+    };
+
+    void sort(const BoundsPyramid& pyramid);
+    void lay_axes(const BoundsPacket& top, Vec2f centre);
+    void add(std::size_t place);
+
+    std::vector<std::uint32_t> order_;
+    std::vector<BoundsPacket> bounds_;
+    Axis columns_, rows_;
+    std::size_t words_;                     ///< a band
+    std::vector<std::uint64_t> of_column_;  ///< a bit a place, band by band
+    std::vector<std::uint64_t> of_row_;
+    Cover cover_;
+};
+
+}  // namespace ink
