@@ -7,10 +7,7 @@
 namespace inktrace::viewer {
 namespace {
 
-namespace fs = std::filesystem;
 using namespace test;
-using ink::Vec3d;
-using ink::test::TemporaryFolder;
 
 // ---- Files ----
 

@@ -12,10 +12,7 @@
 namespace inktrace::viewer {
 namespace {
 
-namespace fs = std::filesystem;
 using namespace test;
-using ink::Vec3d;
-using ink::test::TemporaryFolder;
 
 TEST(Session, RefinesToWhatRenderGives) {
     Owner owner;
@@ -113,6 +110,36 @@ TEST(Session, ExportsABiologicalAssemblyAsItsCommandDoes) {
     ASSERT_TRUE(owner.wait_for_picture()) << owner.session.message().text;
     ASSERT_EQ(run(owner.session.command_line("x.png"), folder.path()), 0);
     EXPECT_EQ(read_png(folder.path() / "x.png"), bytes(*owner.session.painting().picture));
+}
+
+TEST(Session, IsDrawnAgainByItsCommandLineAfterUndoAndReset) {
+    const TemporaryFolder folder;
+    Owner owner;
+    owner.session.open({folder.write("run.xyz", kFrames)}, {{"look", "technical"}, {"frame", "1"}});
+    owner.session.resize({90, 70});
+    Session& session = owner.session;
+    const auto expect_same = [&] {
+        ASSERT_TRUE(owner.wait_for_picture()) << session.message().text;
+        ASSERT_EQ(run(session.command_line("x.png"), folder.path()), 0);
+        EXPECT_EQ(read_png(folder.path() / "x.png"), bytes(*session.painting().picture))
+            << session.command_line();
+    };
+    expect_same();
+    session.set("look", "goodsell");
+    session.set("hidden", "dashed");
+    session.set("line", "hidden:width=2px,color=teal");
+    session.set_frame(2);
+    expect_same();
+    session.undo();  // frames are no part of it
+    EXPECT_EQ(session.settings().get("line"), "");
+    EXPECT_EQ(session.settings().get("hidden"), "dashed");
+    expect_same();
+    session.redo();
+    session.move_camera(session.camera().turned(30, 10).with_projection(true));
+    expect_same();
+    session.reset();
+    EXPECT_EQ(session.settings().get("look"), "technical");
+    expect_same();
 }
 
 TEST(Session, TakesBackSettingsOfASceneFileInItsCommandLine) {

@@ -66,6 +66,20 @@ until_ "it does not play" differs after.png
 xdotool key space
 until_ "it does not stop" rests
 
+# Another file by the dialog, and all of it in view again.
+xdotool key ctrl+o
+until_ "Ctrl+O shows no dialog" differs after.png
+xdotool type molecule.pdb
+xdotool key Return
+opened molecule.pdb
+xdotool mousemove 300 450 click 4 click 4
+takes f
+xdotool key ctrl+o
+sleep 0.5
+xdotool type run.xyz
+xdotool key Return
+opened run.xyz
+
 # A file that is replaced, and one that goes, while it is drawn.
 cp molecule.pdb other && mv other run.xyz
 until_ "no word about another kind of file" complains 960

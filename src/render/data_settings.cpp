@@ -212,7 +212,7 @@ std::vector<Setting> data_settings_rows() {
          "deformation "
          "gradients (F11 to F33), or turned by quaternions",
          [](S& s, Text t) { s.data.glyph = read_word(kGlyphs, t); },
-         [](const S& s) { return print_word(kGlyphs, s.data.glyph); }},
+         [](const S& s) { return print_word(kGlyphs, s.data.glyph); }, false, one_of(kGlyphs)},
         {"glyph-field", "Input", "FIELD",
          "Tensor or quaternion of boxes and ellipsoids, where its name does not tell",
          [](S& s, Text t) { s.data.glyph_field = t; },

@@ -10,6 +10,8 @@
 #include <string>
 #include <system_error>
 
+#include "window/file_list.h"
+#include "window/setting_row.h"
 #include "window/shortcuts.h"
 
 namespace inktrace::viewer {
@@ -39,16 +41,33 @@ void label(Interface& interface, const char* text) {
 }
 
 void draw_open(Interface& interface) {
+    static FileList list;
+    const bool opening = interface.open_dialog;
     if (!begin_dialog(interface, "Open", interface.open_dialog, 520)) return;
-    if (ImGui::IsWindowAppearing()) ImGui::SetKeyboardFocusHere();
     std::string& file = interface.drafts["open file"];
+    if (opening) {
+        const auto& files = interface.session.files();
+        const bool first = list.folder().empty() && !files.empty();
+        list.enter(first ? files.front().parent_path() : list.folder());
+        ImGui::SetKeyboardFocusHere();
+    }
     label(interface, "File");
     const bool entered = ImGui::InputText("##file", &file, ImGuiInputTextFlags_EnterReturnsTrue);
-    ImGui::TextDisabled("Files can also be dropped on the window.");
-    const bool open = ImGui::Button("Open", {interface.px(90), 0}) || entered;
+    const bool chosen = list.draw(interface, file);
+    ImGui::TextDisabled("Files can also be dropped on the window: several make one picture.");
+    bool open = ImGui::Button("Open", {interface.px(90), 0}) || entered || chosen;
     ImGui::SameLine();
     const bool close = ImGui::Button("Close", {interface.px(90), 0}) || wants_out();
-    if (open && !file.empty()) interface.attempt([&] { interface.session.open({file}); });
+    std::error_code failure;
+    if (open && !file.ends_with(".uda") && std::filesystem::is_directory(file, failure)) {
+        list.enter(file);
+        file.clear();
+        open = false;
+    }
+    if (open && !file.empty()) {
+        interface.picked.reset();
+        interface.attempt([&] { interface.session.open({file}); });
+    }
     if (open || close) ImGui::CloseCurrentPopup();
     ImGui::EndPopup();
 }
@@ -112,6 +131,8 @@ void draw_export(Interface& interface) {
                         ".png .jpg .tiff .exr: pixels   .svg .pdf: curves   .json: scene file");
     describe_place(choice.file);
     export_size(interface, choice);
+    const auto aov = std::ranges::find(all_settings(), "aov", &SettingInfo::name);
+    if (aov != all_settings().end()) setting_row(interface, *aov, 90);
     ImGui::Spacing();
     const float width = interface.px(110);
     const ink::Size size{choice.width, choice.height};

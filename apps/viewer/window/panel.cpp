@@ -148,9 +148,10 @@ void line_types(Interface& interface) {
     ImGui::Separator();
 }
 
-/// Settings that other parts of the window stand for.
+/// Settings that other parts of the window stand for: its size, the rows of line types, the dialog
+/// for files, and the painter, which chooses tiles itself.
 bool has_a_place_of_its_own(const std::string& name) {
-    return name == "size" || name == "lines" || name == "line" || name == "aov" || name == "tile";
+    return name == "size" || name == "lines" || name == "aov" || name == "tile";
 }
 
 /// Whether a setting has a say in the picture, by what its help begins with.
@@ -197,7 +198,8 @@ void draw_panel(Interface& interface, float left, float width, float height) {
     ImGui::Begin("##panel", nullptr,
                  ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize |
                      ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoMove |
-                     ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoNav);
+                     ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoNav |
+                     ImGuiWindowFlags_AlwaysVerticalScrollbar);  // widths stay as sections open
     buttons(interface);
     ImGui::Spacing();
     describe_files(interface);

@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <string_view>
+#include <utility>
 
 #include "base/color.h"
 #include "base/text.h"
@@ -14,6 +16,24 @@
 namespace inktrace::viewer {
 
 namespace {
+
+/// What an empty value stands for, where that is not a choice of the program.
+const char* unset_text(const std::string& name) {
+    static constexpr std::array<std::pair<std::string_view, const char*>, 10> kTexts{
+        {{"select", "all atoms"},
+         {"assembly", "as in the file"},
+         {"clip", "nothing cut off"},
+         {"orthographic", "perspective"},
+         {"line", "no rules"},
+         {"material", "as in the file"},
+         {"light", "the look's"},
+         {"color-range", "least to greatest"},
+         {"eye", "by view"},
+         {"look-at", "by view"}}};
+    const auto* const found =
+        std::ranges::find(kTexts, name, [](const auto& text) { return std::string(text.first); });
+    return found == kTexts.end() ? "auto" : found->second;
+}
 
 /// The shortest text of what a slider says.
 std::string number_text(float value) { return fmt::format("{:.4g}", value); }
@@ -69,8 +89,10 @@ void slide_number(Interface& interface, const SettingInfo& info, const std::stri
 
 void slide_whole(Interface& interface, const SettingInfo& info, const std::string& value) {
     auto number = static_cast<int>(ink::parse_int(value).value_or(0));
+    const bool all = info.name == "threads" && number == 0;
+    const char* const format = value.empty() ? "auto" : all ? "all" : "%d";
     if (ImGui::SliderInt("##value", &number, static_cast<int>(info.form.least),
-                         static_cast<int>(info.form.most), value.empty() ? "auto" : "%d")) {
+                         static_cast<int>(info.form.most), format)) {
         interface.set(info.name, std::to_string(number));
     }
 }
@@ -89,7 +111,9 @@ void choose_color(Interface& interface, const SettingInfo& info, std::string val
 /// Words that a text may be: those of the table, and the fields that the files have.
 std::vector<std::string> suggestions(const Interface& interface, const SettingInfo& info) {
     std::vector<std::string> words = info.form.words;
-    if (info.name != "color-by" && info.name != "radius") return words;
+    const bool fields =
+        info.name == "color-by" || info.name == "radius" || info.name == "glyph-field";
+    if (!fields) return words;
     for (const FileInfo& file : interface.session.infos()) {
         for (const FieldInfo& field : file.fields) {
             if (std::ranges::find(words, field.name) == words.end()) words.push_back(field.name);
@@ -105,8 +129,8 @@ void type_text(Interface& interface, const SettingInfo& info, const std::string&
     const auto draft = interface.drafts.find(info.name);
     if (draft != interface.drafts.end()) text = draft->second;
     ImGui::SetNextItemWidth(ImGui::CalcItemWidth() - arrow);
-    const bool entered =
-        ImGui::InputTextWithHint("##value", "auto", &text, ImGuiInputTextFlags_EnterReturnsTrue);
+    const bool entered = ImGui::InputTextWithHint("##value", unset_text(info.name), &text,
+                                                  ImGuiInputTextFlags_EnterReturnsTrue);
     if (ImGui::IsItemActive()) {
         interface.drafts[info.name] = text;
     } else {
@@ -122,7 +146,9 @@ void type_text(Interface& interface, const SettingInfo& info, const std::string&
         return;
     }
     const bool can_be_auto = Settings().get(info.name).empty();
-    if (can_be_auto && ImGui::Selectable("auto", value.empty())) interface.set(info.name, "");
+    if (can_be_auto && ImGui::Selectable(unset_text(info.name), value.empty())) {
+        interface.set(info.name, "");
+    }
     for (const std::string& word : words) {
         if (ImGui::Selectable(word.c_str(), word == value)) interface.set(info.name, word);
     }
@@ -164,7 +190,7 @@ bool length_slider(const char* label, std::string& value, double least_px, doubl
     return true;
 }
 
-void setting_row(Interface& interface, const SettingInfo& info) {
+void setting_row(Interface& interface, const SettingInfo& info, float value_points) {
     using Kind = ValueForm::Kind;
     const std::string value = interface.session.settings().get(info.name);
     const bool changed = value != interface.session.base_value(info.name);
@@ -172,7 +198,7 @@ void setting_row(Interface& interface, const SettingInfo& info) {
     ImGui::AlignTextToFramePadding();
     ImGui::TextUnformatted(info.name.c_str());
     help_tooltip(info);
-    ImGui::SameLine(interface.px(kValuePoints));
+    ImGui::SameLine(interface.px(value_points));
     const float reset = ImGui::GetFrameHeight();
     ImGui::PushItemWidth(ImGui::GetContentRegionAvail().x - reset - interface.px(4));
     const float left = ImGui::GetCursorPosX();

@@ -10,7 +10,7 @@ namespace inktrace::viewer {
 inline constexpr float kValuePoints = 132.0F;
 
 /// One row of the panel: the name of a setting, and what its value can be chosen or typed with.
-void setting_row(Interface& interface, const SettingInfo& info);
+void setting_row(Interface& interface, const SettingInfo& info, float value_points = kValuePoints);
 
 /// A colour to choose, "#rrggbb" or a name; true when another one was chosen.
 bool color_button(const char* label, std::string& value);

@@ -61,7 +61,8 @@ void next_composition(Interface& interface) {
 }
 
 void focus_picked(Interface& interface) {
-    if (!interface.picked || !interface.session.has_scene()) return;
+    if (!interface.session.has_scene()) return;
+    if (!interface.picked) return interface.session.frame_all();
     const auto& c = interface.picked->center;
     interface.session.move_camera(interface.session.camera().focused({c[0], c[1], c[2]}));
 }
@@ -90,10 +91,11 @@ std::vector<Shortcut> make_shortcuts() {
         {"5", "5", "from the top", view("top")},
         {"6", "6", "from the bottom", view("bottom")},
         {"7", "7", "isometric", view("iso")},
-        {"0", "0", "view as at the start", view("auto")},
+        {"0", "0, r", "view as at the start", view("auto")},
+        {"r", "", nullptr, view("auto")},
         {"Home", "Home, a", "all of it", [](Interface& i) { i.session.frame_all(); }},
         {"a", "", nullptr, [](Interface& i) { i.session.frame_all(); }},
-        {"f", "f", "turn about what is picked", focus_picked},
+        {"f", "f", "turn about what is picked, or all", focus_picked},
         {"o", "o", "perspective, orthographic", switch_projection},
         {"l", "l", "lines, shading, both", next_composition},
         {"Space", "Space", "play, pause",
@@ -104,14 +106,15 @@ std::vector<Shortcut> make_shortcuts() {
         {"Ctrl+Y", "Ctrl+Y", "redo", [](Interface& i) { i.session.redo(); }},
         {"Ctrl+Shift+Z", "", nullptr, [](Interface& i) { i.session.redo(); }},
         {"Ctrl+O", "Ctrl+O", "open", [](Interface& i) { i.open_dialog = true; }},
-        {"Ctrl+E", "Ctrl+E", "export",
+        {"Ctrl+E", "Ctrl+E, S", "export",
          [](Interface& i) { i.export_dialog = i.session.has_scene(); }},
         {"Ctrl+S", "", nullptr, [](Interface& i) { i.export_dialog = i.session.has_scene(); }},
         {"Ctrl+C", "Ctrl+C", "copy the command line", copy_command},
         {"F5", "F5", "read the files again", [](Interface& i) { i.session.reload(); }},
         {"Tab", "Tab", "panel", [](Interface& i) { i.panel = !i.panel; }},
         {"p", "p", "performance", [](Interface& i) { i.performance = !i.performance; }},
-        {"?", "?", "this help", [](Interface& i) { i.help = true; }},
+        {"?", "?, F1", "this help", [](Interface& i) { i.help = true; }},
+        {"F1", "", nullptr, [](Interface& i) { i.help = true; }},
         {"Ctrl+Q", "Ctrl+Q", "quit", [](Interface& i) { i.window.close(); }},
     };
 }

@@ -63,6 +63,7 @@ std::string key_name(int key, int scancode) {
         case GLFW_KEY_HOME: return "Home";
         case GLFW_KEY_ESCAPE: return "Esc";
         case GLFW_KEY_TAB: return "Tab";
+        case GLFW_KEY_F1: return "F1";
         case GLFW_KEY_F5: return "F5";
         case GLFW_KEY_F11: return "F11";
         default: break;
