@@ -169,6 +169,63 @@ TEST(MeshLines, LookTheSameFromEdgesAndFromCrossings) {
     }
 }
 
+constexpr const char* kAllOutlines = "silhouette,intersection,self-occlusion,crease,boundary,mesh";
+
+/// A square of 60 pixels in front of two triangles that fill the picture. The edge between these is
+/// hidden: so far behind the square's right side, in pixels.
+Scene square_before_edge(float behind) {
+    const float x = 30.0F - behind;
+    return Scene({mesh_object({{-30, -30, 1}, {30, -30, 1}, {30, 30, 1}, {-30, 30, 1}},
+                              {{0, 1, 2}, {0, 2, 3}}),
+                  mesh_object({{x, -500, 0}, {x, 500, 0}, {500, 0, 0}, {-500, 0, 0}},
+                              {{0, 2, 1}, {0, 1, 3}})});
+}
+
+TEST(MeshLines, ThatAreHiddenInkNothingBesideTheOutline) {
+    const Size size{128, 96};
+    Settings settings = plan_view(size, 4.0);
+    settings.aovs.clear();
+    set(settings, "lines", kAllOutlines);
+    set(settings, "line-density", "1");
+    const Film far = draw(square_before_edge(20.0F), settings);
+    for (const float behind : {0.0F, 0.25F, 1.0F, 1.75F}) {
+        SCOPED_TRACE(behind);
+        const Film near = draw(square_before_edge(behind), settings);
+        for (int y = 24; y < 72; ++y) {
+            for (int x = 80; x < size.width; ++x) {
+                const std::size_t k = at(size, x, y);
+                EXPECT_EQ(near.display().pixels[k], far.display().pixels[k]) << x << ", " << y;
+            }
+        }
+    }
+}
+
+TEST(MeshLines, RunUnderOutlinesAsIfTheyEndedThere) {
+    const Scene scene({coarse_torus()});
+    const auto tracer = make_tracer(scene);
+    for (const char* width : {"1", "2.5"}) {
+        Settings settings = plan_view({192, 160});
+        set(settings, "line-width", width);
+        set(settings, "lines", kAllOutlines);
+        // Planes of lines want to know which line is nearest, so that those between faces end.
+        const Film ended = render(scene, *tracer, settings);
+        settings.aovs.clear();
+        const Film covered = render(scene, *tracer, settings);
+        const auto& a = ended.display().pixels;
+        const auto& b = covered.display().pixels;
+        double sum = 0.0;
+        std::size_t far = 0;
+        for (std::size_t k = 0; k < a.size(); ++k) {
+            const int off =
+                std::abs(static_cast<int>(a[k] & 0xFFU) - static_cast<int>(b[k] & 0xFFU));
+            sum += off;
+            far += off > 64 ? 1 : 0;
+        }
+        EXPECT_LT(sum / static_cast<double>(a.size()), 0.5);
+        EXPECT_LT(far, a.size() / 250);
+    }
+}
+
 TEST(MeshLines, FinerThanPixelsAreATone) {
     std::vector<Vec3f> vertices;
     std::vector<Mesh::Triangle> triangles;

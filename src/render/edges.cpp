@@ -141,6 +141,22 @@ Edges::Edges(const Pipeline& shared)
     }
 }
 
+/// The outline lies between a pixel and what it does not see, and so is nearer to the pixel.
+bool Edges::outlines_cover_faces() const {
+    const bool planes = pipeline.aovs && pipeline.aovs->wants_line_planes();
+    if (styles_by_object || tells_inner || planes) return false;
+    const auto style = [&](LineType type) { return ink.styles[static_cast<std::size_t>(type)]; };
+    const LineStyle faces = style(LineType::mesh);
+    const auto covers = [&](LineType type) {
+        const LineStyle own = style(type);
+        const bool one_ink = own.color == faces.color && own.opacity == faces.opacity;
+        const bool on_top = own.opacity == 1.0F && ink.profile.kind == Metric::Kind::solid;
+        return wanted.has(type) && own.width_px >= faces.width_px && (one_ink || on_top);
+    };
+    return covers(LineType::silhouette) && covers(LineType::intersection) &&
+           covers(LineType::self_occlusion) && covers(LineType::boundary);
+}
+
 std::size_t Edges::style_of(const Segment& segment) const {
     const auto type = static_cast<std::size_t>(segment.type);
     const bool by_object = styles_by_object && segment.owner != kBackground;

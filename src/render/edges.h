@@ -45,6 +45,9 @@ struct Edges {
                (pipeline.aovs && pipeline.aovs->wants_line_planes());
     }
     bool wants_faces() const { return find_lines && has_meshes && wanted.has(LineType::mesh); }
+    /// Whether the line where a face goes out of sight covers all that its edges behind it could
+    /// ink, so that lines between faces need not end there.
+    bool outlines_cover_faces() const;
 
     /// Whether both sides of a line belong to one whole, where that makes a difference.
     bool is_inner(const Segment& segment) const;

@@ -264,13 +264,13 @@ void LineFinder::find_lines() {
     {
         const Timer phase(stats_.locate_ms);
         locate();
-        if (faces_ != nullptr) cross_faces();
+        if (crosses_faces()) cross_faces();
     }
     {
         const Timer phase(stats_.connect_ms);
         connector_.connect(grid_, suspects_, crossings_, segments_);
         if (front_ && edges_.tones) find_tones();
-        if (faces_ != nullptr) drop_unmarked_faces();
+        if (crosses_faces()) drop_unmarked_faces();
         stats_.crossings += crossings_.size();
     }
     keep();

@@ -75,6 +75,7 @@ class LineFinder {
           front_(front),
           ids_only_(front && edges.balls_only),
           faces_(faces),
+          faces_end_(faces != nullptr && !edges.outlines_cover_faces()),
           sampler_(frame, edges.pipeline.camera, edges.q),
           pixel_sampler_(frame, edges.pipeline.camera),
           locator_(edges.viewpoint, edges.locate,
@@ -150,6 +151,7 @@ class LineFinder {
     void map_faces(const Tile& tile);
     void map_block(int x, int y);
     void add_face_density(std::size_t block);
+    bool crosses_faces() const;
     void cross_faces();
     void cross_faces(int i, int j, bool down);
     void drop_unmarked_faces();
@@ -172,6 +174,7 @@ class LineFinder {
     bool ids_only_;
     bool saw_anything_ = false;
     FaceMap* faces_;
+    bool faces_end_;  ///< lines between faces end where another line is in front
     Sampler sampler_;
     Sampler pixel_sampler_;
     Locator locator_;

@@ -62,9 +62,14 @@ void LineFinder::add_face_density(std::size_t block) {
     if (specular_) direct_density_.add(middle * grid_.spacing, length, width);
 }
 
-/// Lines between the faces of meshes, in the cells through which other lines run: as crossings of
-/// those edges of the lattice that have none yet. Beside a crease they are not searched for: there
-/// they are as visible as it is.
+/// Whether any line between faces must be a crossing.
+bool LineFinder::crosses_faces() const {
+    return faces_ != nullptr && (faces_end_ || edges_.pipeline.lines.drawing != nullptr);
+}
+
+/// Lines between the faces of meshes, in the cells through which other lines run, unless these
+/// cover their ends: as crossings of those edges of the lattice that have none yet. Beside a crease
+/// they are not searched for: there they are as visible as it is.
 void LineFinder::cross_faces() {
     marks_.assign(grid_.id.size(), 0);
     marked_.clear();
@@ -74,7 +79,7 @@ void LineFinder::cross_faces() {
     }
     for (const Crossing& crossing : crossings_) {
         const SuspectEdge& edge = suspects_[crossing.edge];
-        if (crossing.type == LineType::crease) continue;
+        if (crossing.type == LineType::crease || !faces_end_) continue;
         mark(edge.i, edge.j);
         mark(edge.i - (edge.down ? 1 : 0), edge.j - (edge.down ? 0 : 1));
     }
