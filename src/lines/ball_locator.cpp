@@ -94,13 +94,6 @@ void BallLocator::search(const BallEdge& edge, std::size_t k) {
     lanes.squared_radius[lane] = found->squared_radius;
 }
 
-Prediction BallLocator::prediction(std::size_t k) const {
-    const PredictionLanes& lanes = predictions_[k / kLanes];
-    const auto lane = static_cast<int>(k % kLanes);
-    return {static_cast<Prediction::Kind>(lanes.kind[lane]), lanes.at[lane], lanes.t[lane],
-            lanes.squared_radius[lane]};
-}
-
 /// Predictions that a ray beside them does not confirm become none.
 void BallLocator::check(std::span<const BallEdge> edges, const IdentifyFunction& identify) {
     checked_.clear();

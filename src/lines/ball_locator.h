@@ -44,7 +44,12 @@ class BallLocator {
                  std::span<const BallEdge> edges);
     void search(const BallEdge& edge, std::size_t k);
     void check(std::span<const BallEdge> edges, const IdentifyFunction& identify);
-    Prediction prediction(std::size_t k) const;
+    Prediction prediction(std::size_t k) const {
+        const PredictionLanes& lanes = predictions_[k / kLanes];
+        const auto lane = static_cast<int>(k % kLanes);
+        return {static_cast<Prediction::Kind>(lanes.kind[lane]), lanes.at[lane], lanes.t[lane],
+                lanes.squared_radius[lane]};
+    }
 
     Viewpoint viewpoint_;
     LocateSettings settings_;

@@ -6,6 +6,8 @@
 #include <cstring>
 #include <limits>
 
+#include "base/multiversion.h"
+
 namespace ink {
 
 namespace {
@@ -32,20 +34,89 @@ Vec2f nearest_within(Vec2f p, Vec2f a, Vec2f b) {
 
 }  // namespace
 
+INKTRACE_INLINE Connector::Port Connector::make_port(const SampleGrid& grid, int i, int j, int side,
+                                                     const SuspectEdge& edge,
+                                                     const Crossing& crossing) {
+    const Vec2f corner = grid.point(i, j);
+    const Vec2f inside = (crossing.point - corner) * (1.0F / grid.spacing);
+    const auto first = static_cast<std::uint32_t>(grid.index(edge.i, edge.j));
+    const auto second = static_cast<std::uint32_t>(edge.down ? grid.index(edge.i, edge.j + 1)
+                                                             : grid.index(edge.i + 1, edge.j));
+    Port port{0.0F,  &crossing, crossing.first,         crossing.second,
+              first, second,    crossing.first_in_front};
+    switch (side) {
+        case kTop: port.way = inside.x; break;
+        case kRight: port.way = 1.0F + inside.y; break;
+        case kBottom: port.way = 3.0F - inside.x; break;
+        default: port.way = 4.0F - inside.y; break;
+    }
+    if (side == kBottom || side == kLeft) {  // walked from the second end to the first
+        std::swap(port.before, port.after);
+        std::swap(port.before_sample, port.after_sample);
+        port.before_in_front = !port.before_in_front;
+    }
+    return port;
+}
+
+/// Whether a line can run between two neighbouring ports without cutting another.
+INKTRACE_INLINE bool Connector::one_line(const Port& p, const Port& q) {
+    return p.before == q.after && p.after == q.before &&
+           (p.before != p.after || p.crossing->type == q.crossing->type);
+}
+
+INKTRACE_INLINE Segment& Connector::add_segment(const Port& from, Vec2f to,
+                                                std::vector<Segment>& segments) {
+    const Crossing& p = *from.crossing;
+    Segment& segment = segments.emplace_back();
+    segment.a = p.point;
+    segment.b = to;
+    segment.type = segment.type_at_b = p.type;
+    segment.strength = p.strength;
+    segment.t = p.t;
+    segment.owner = p.nearer;
+    // Lines between faces are told apart by the faces, and lie within one geometry.
+    const bool mesh = p.type == LineType::mesh;
+    segment.left = segment.left_at_b = mesh ? p.nearer : from.after;
+    segment.right = segment.right_at_b = mesh ? p.nearer : from.before;
+    segment.left_in_front = segment.left_in_front_at_b = !from.before_in_front;
+    segment.left_sample = from.after_sample;
+    segment.right_sample = from.before_sample;
+    return segment;
+}
+
+/// Going clockwise round the cell, a line that enters it at `from` has what comes after that port
+/// on its left (y points down).
+INKTRACE_INLINE void Connector::add_segment(const Port& from, const Port& to,
+                                            std::vector<Segment>& segments) {
+    const Crossing& p = *from.crossing;
+    const Crossing& q = *to.crossing;
+    Segment& segment = add_segment(from, q.point, segments);
+    segment.spans_cell = true;
+    segment.strength = 0.5F * (p.strength + q.strength);
+    segment.t = 0.5F * (p.t + q.t);
+    segment.type_at_b = q.type;
+    const bool mesh = q.type == LineType::mesh;
+    segment.left_at_b = mesh ? q.nearer : to.before;
+    segment.right_at_b = mesh ? q.nearer : to.after;
+    segment.left_in_front_at_b = to.before_in_front;
+}
+
 void Connector::connect(const SampleGrid& grid, std::span<const SuspectEdge> edges,
                         std::span<const Crossing> crossings, std::vector<Segment>& segments) {
     segments.clear();
     if (crossings.empty()) return;
     count_members(grid, edges, crossings);
-    // Most cells have none: eight at a time.
-    const std::size_t cells = counts_.size();
-    for (std::size_t first = 0; first < cells; first += 8) {
-        std::uint64_t eight = 0;
-        std::memcpy(&eight, counts_.data() + first, std::min<std::size_t>(8, cells - first));
-        for (; eight != 0;) {
-            const auto byte = static_cast<std::size_t>(std::countr_zero(eight)) / 8;
-            connect_cell(grid, edges, crossings, first + byte, segments);
-            eight &= ~(std::uint64_t{0xFF} << (8 * byte));
+    // Most cells have none, or one, which there is nothing to join with: eight at a time.
+    constexpr std::uint64_t kTwoOrMore = 0x0202020202020202U;
+    for (int j = 0; j < grid.height - 1; ++j) {
+        const std::uint8_t* const row = counts_.data() + static_cast<std::size_t>(j) * stride_;
+        for (std::size_t first = 0; first < stride_; first += 8) {
+            std::uint64_t eight = 0;
+            std::memcpy(&eight, row + first, 8);
+            for (eight &= kTwoOrMore; eight != 0; eight &= eight - 1) {
+                const std::size_t i = first + static_cast<std::size_t>(std::countr_zero(eight)) / 8;
+                connect_cell(grid, edges, crossings, static_cast<int>(i), j, segments);
+            }
         }
     }
 }
@@ -54,14 +125,15 @@ void Connector::count_members(const SampleGrid& grid, std::span<const SuspectEdg
                               std::span<const Crossing> crossings) {
     const int across = grid.width - 1;
     const int down = grid.height - 1;
-    const std::size_t cells = static_cast<std::size_t>(across) * static_cast<std::size_t>(down);
+    stride_ = static_cast<std::size_t>(across + 7) / 8 * 8;
+    const std::size_t cells = stride_ * static_cast<std::size_t>(down);
     counts_.assign(cells, 0);
     members_.resize(cells);
     more_.clear();
     const auto add = [&](int i, int j, int side, std::size_t crossing) {
         if (i < 0 || j < 0 || i >= across || j >= down) return;
-        const std::size_t cell = static_cast<std::size_t>(j) * static_cast<std::size_t>(across) +
-                                 static_cast<std::size_t>(i);
+        const std::size_t cell =
+            static_cast<std::size_t>(j) * stride_ + static_cast<std::size_t>(i);
         const Member member = static_cast<Member>(side) << 30U | static_cast<Member>(crossing);
         if (counts_[cell] < 2) {
             members_[cell][counts_[cell]++] = member;
@@ -80,12 +152,9 @@ void Connector::count_members(const SampleGrid& grid, std::span<const SuspectEdg
 }
 
 void Connector::connect_cell(const SampleGrid& grid, std::span<const SuspectEdge> edges,
-                             std::span<const Crossing> crossings, std::size_t cell,
+                             std::span<const Crossing> crossings, int i, int j,
                              std::vector<Segment>& segments) {
-    if (counts_[cell] < 2) return;  // nothing to join it with
-    const auto across = static_cast<std::size_t>(grid.width - 1);
-    const auto i = static_cast<int>(cell % across);
-    const auto j = static_cast<int>(cell / across);
+    const std::size_t cell = static_cast<std::size_t>(j) * stride_ + static_cast<std::size_t>(i);
     const auto port = [&](Member member) {
         const Crossing& crossing = crossings[member & 0x3FFFFFFFU];
         return make_port(grid, i, j, static_cast<int>(member >> 30U), edges[crossing.edge],
@@ -110,35 +179,6 @@ void Connector::connect_cell(const SampleGrid& grid, std::span<const SuspectEdge
     for (const Member member : cell_members_) ports_.push_back(port(member));
     first_segment_ = segments.size();
     join_ports(segments);
-}
-
-Connector::Port Connector::make_port(const SampleGrid& grid, int i, int j, int side,
-                                     const SuspectEdge& edge, const Crossing& crossing) {
-    const Vec2f corner = grid.point(i, j);
-    const Vec2f inside = (crossing.point - corner) * (1.0F / grid.spacing);
-    const auto first = static_cast<std::uint32_t>(grid.index(edge.i, edge.j));
-    const auto second = static_cast<std::uint32_t>(edge.down ? grid.index(edge.i, edge.j + 1)
-                                                             : grid.index(edge.i + 1, edge.j));
-    Port port{0.0F,  &crossing, crossing.first,         crossing.second,
-              first, second,    crossing.first_in_front};
-    switch (side) {
-        case kTop: port.way = inside.x; break;
-        case kRight: port.way = 1.0F + inside.y; break;
-        case kBottom: port.way = 3.0F - inside.x; break;
-        default: port.way = 4.0F - inside.y; break;
-    }
-    if (side == kBottom || side == kLeft) {  // walked from the second end to the first
-        std::swap(port.before, port.after);
-        std::swap(port.before_sample, port.after_sample);
-        port.before_in_front = !port.before_in_front;
-    }
-    return port;
-}
-
-/// Whether a line can run between two neighbouring ports without cutting another.
-bool Connector::one_line(const Port& p, const Port& q) {
-    return p.before == q.after && p.after == q.before &&
-           (p.before != p.after || p.crossing->type == q.crossing->type);
 }
 
 void Connector::join_ports(std::vector<Segment>& segments) {
@@ -219,41 +259,6 @@ void Connector::end_last_on_others(std::vector<Segment>& segments) {
     const Segment through = segments.back();
     add_segment(ports_[2], nearest_within(ports_[2].crossing->point, through.a, through.b),
                 segments);
-}
-
-/// Going clockwise round the cell, a line that enters it at `from` has what comes after that port
-/// on its left (y points down).
-void Connector::add_segment(const Port& from, const Port& to, std::vector<Segment>& segments) {
-    const Crossing& p = *from.crossing;
-    const Crossing& q = *to.crossing;
-    Segment& segment = add_segment(from, q.point, segments);
-    segment.spans_cell = true;
-    segment.strength = 0.5F * (p.strength + q.strength);
-    segment.t = 0.5F * (p.t + q.t);
-    segment.type_at_b = q.type;
-    const bool mesh = q.type == LineType::mesh;
-    segment.left_at_b = mesh ? q.nearer : to.before;
-    segment.right_at_b = mesh ? q.nearer : to.after;
-    segment.left_in_front_at_b = to.before_in_front;
-}
-
-Segment& Connector::add_segment(const Port& from, Vec2f to, std::vector<Segment>& segments) {
-    const Crossing& p = *from.crossing;
-    Segment& segment = segments.emplace_back();
-    segment.a = p.point;
-    segment.b = to;
-    segment.type = segment.type_at_b = p.type;
-    segment.strength = p.strength;
-    segment.t = p.t;
-    segment.owner = p.nearer;
-    // Lines between faces are told apart by the faces, and lie within one geometry.
-    const bool mesh = p.type == LineType::mesh;
-    segment.left = segment.left_at_b = mesh ? p.nearer : from.after;
-    segment.right = segment.right_at_b = mesh ? p.nearer : from.before;
-    segment.left_in_front = segment.left_in_front_at_b = !from.before_in_front;
-    segment.left_sample = from.after_sample;
-    segment.right_sample = from.before_sample;
-    return segment;
 }
 
 }  // namespace ink

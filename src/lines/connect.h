@@ -38,7 +38,7 @@ class Connector {
     void count_members(const SampleGrid& grid, std::span<const SuspectEdge> edges,
                        std::span<const Crossing> crossings);
     void connect_cell(const SampleGrid& grid, std::span<const SuspectEdge> edges,
-                      std::span<const Crossing> crossings, std::size_t cell,
+                      std::span<const Crossing> crossings, int i, int j,
                       std::vector<Segment>& segments);
     static Port make_port(const SampleGrid& grid, int i, int j, int side, const SuspectEdge& edge,
                           const Crossing& crossing);
@@ -52,7 +52,8 @@ class Connector {
 
     /// A crossing on a side of a cell: side << 30 | crossing.
     using Member = std::uint32_t;
-    std::vector<std::uint8_t> counts_;                  ///< of a cell's members
+    std::size_t stride_ = 0;            ///< cells of a row, and some more to make whole eights
+    std::vector<std::uint8_t> counts_;  ///< of a cell's members: up to 2, or 3 for more
     std::vector<std::array<Member, 2>> members_;        ///< a cell's first two
     std::vector<std::pair<std::size_t, Member>> more_;  ///< the others, by cell
     std::vector<Member> cell_members_;

@@ -29,6 +29,23 @@ HWY_INLINE Number load(const Lanes<float>& lanes, int first) {
 /// square_coverage (lines/coverage.h), a normal a lane.
 class SquareCoverage {
   public:
+    /// What depends on the normal alone.
+    struct Shape {
+        Lanes<float> reach, flat, slope, corner;
+    };
+    HWY_INLINE void store(Shape& shape, int first) const {
+        hn::Store(reach_, kFloats, shape.reach.data() + first);
+        hn::Store(flat_, kFloats, shape.flat.data() + first);
+        hn::Store(slope_, kFloats, shape.slope.data() + first);
+        hn::Store(corner_, kFloats, shape.corner.data() + first);
+    }
+    /// The normal of one lane of a shape, in all.
+    HWY_INLINE SquareCoverage(const Shape& shape, int lane)
+        : reach_(set(shape.reach[lane])),
+          flat_(set(shape.flat[lane])),
+          slope_(set(shape.slope[lane])),
+          corner_(set(shape.corner[lane])) {}
+
     HWY_INLINE SquareCoverage(Number nx, Number ny) {
         const Number wide = hn::Max(hn::Abs(nx), hn::Abs(ny));
         const Number narrow = hn::Min(hn::Abs(nx), hn::Abs(ny));

@@ -9,8 +9,6 @@ namespace ink {
 
 namespace {
 
-constexpr float kFixedPoint = 1 << 20;
-
 int floor_divide(int a, int b) { return (a >= 0 ? a : a - b + 1) / b; }
 
 /// Squares must be wide enough for a single line, and a bundle of three, to count as sparse.
@@ -31,31 +29,11 @@ LineDensity::LineDensity(int x0, int y0, int x1, int y1, float widest)
       down_(floor_divide(y1 - 1, side_) - j0_ + 2),
       inked_(static_cast<std::size_t>(across_) * static_cast<std::size_t>(down_)) {}
 
-std::size_t LineDensity::square(int i, int j) const {
-    return static_cast<std::size_t>(j - j0_) * static_cast<std::size_t>(across_) +
-           static_cast<std::size_t>(i - i0_);
-}
-
 /// Of a square, as far as it was searched.
 float LineDensity::area(int i, int j) const {
     const int width = std::min(x1_, (i + 1) * side_) - std::max(x0_, i * side_);
     const int height = std::min(y1_, (j + 1) * side_) - std::max(y0_, j * side_);
     return static_cast<float>(std::max(width, 0)) * static_cast<float>(std::max(height, 0));
-}
-
-void LineDensity::add(const InkStroke& stroke, float width) {
-    const Vec2f d = stroke.b - stroke.a;
-    add((stroke.a + stroke.b) * 0.5F, std::sqrt(d.x * d.x + d.y * d.y), width);
-}
-
-void LineDensity::add(Vec2f place, float length, float width) {
-    const float inked = length * width;
-    const auto column = static_cast<int>(std::floor(place.x / static_cast<float>(side_)));
-    const auto row = static_cast<int>(std::floor(place.y / static_cast<float>(side_)));
-    // Lines may end a hair outside of what was searched.
-    const int i = std::clamp(column, i0_, i0_ + across_ - 1);
-    const int j = std::clamp(row, j0_, j0_ + down_ - 1);
-    inked_[square(i, j)] += static_cast<std::int64_t>(inked * kFixedPoint);
 }
 
 LineDensity& LineDensity::operator+=(const LineDensity& other) {

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -22,9 +25,20 @@ class LineDensity {
     /// is the greatest width of a line, pixels: the squares are several times as wide.
     LineDensity(int x0, int y0, int x1, int y1, float widest);
 
-    void add(const InkStroke& stroke, float width);
+    void add(const InkStroke& stroke, float width) {
+        const Vec2f d = stroke.b - stroke.a;
+        add((stroke.a + stroke.b) * 0.5F, std::sqrt(d.x * d.x + d.y * d.y), width);
+    }
     /// Lines of that length in all about a place, pixels.
-    void add(Vec2f place, float length, float width);
+    void add(Vec2f place, float length, float width) {
+        const float inked = length * width;
+        const auto column = static_cast<int>(std::floor(place.x / static_cast<float>(side_)));
+        const auto row = static_cast<int>(std::floor(place.y / static_cast<float>(side_)));
+        // Lines may end a hair outside of what was searched.
+        const int i = std::clamp(column, i0_, i0_ + across_ - 1);
+        const int j = std::clamp(row, j0_, j0_ + down_ - 1);
+        inked_[square(i, j)] += static_cast<std::int64_t>(inked * kFixedPoint);
+    }
     LineDensity& operator+=(const LineDensity& other);
     /// To be called after the last of them, before `at`.
     void finish();
@@ -43,12 +57,17 @@ class LineDensity {
         float searched = 0.0F;  ///< likewise
     };
 
+    static constexpr float kFixedPoint = 1 << 20;
+
     struct Raster;
     Raster raster() const;
     static float share_at(const Raster& raster, Vec2f point);
     static void shares_at(const Raster& raster, std::span<const Vec2f> points,
                           std::span<float> shares);
-    std::size_t square(int i, int j) const;
+    std::size_t square(int i, int j) const {
+        return static_cast<std::size_t>(j - j0_) * static_cast<std::size_t>(across_) +
+               static_cast<std::size_t>(i - i0_);
+    }
     float area(int i, int j) const;
 
     int x0_ = 0, y0_ = 0, x1_ = 0, y1_ = 0;

@@ -16,11 +16,6 @@ namespace {
 
 constexpr int kProfileEntries = 512;
 
-/// The lines between a mesh's faces run up to its outline, and in front of it where the surface
-/// turns away. Taking them to lie this much farther behind, in a scene of size 1, keeps them below
-/// the outline, and above what is well behind.
-constexpr float kMeshBehind = 0.1F;
-
 INKTRACE_MULTIVERSION
 void cover(const Lanes<float>& distance, const Lanes<float>& nx, const Lanes<float>& ny, float half,
            Lanes<float>& inks) {
@@ -48,26 +43,7 @@ bool add_ink(const Lanes<float>& inks, const Lanes<float>& strength, const Lanes
     return any != 0;
 }
 
-Band make_band(const InkStroke& stroke, float width) {
-    const Vec2f d = stroke.b - stroke.a;
-    const float length = std::sqrt(d.x * d.x + d.y * d.y);
-    const Vec2f along = length > 0.0F ? d * (1.0F / length) : Vec2f{1.0F, 0.0F};
-    return {stroke.a, along, length, 0.5F * width, stroke.strength, stroke.t};
-}
-
 }  // namespace
-
-InkStroke make_ink_stroke(const Segment& segment, std::size_t style) {
-    return {segment.a,
-            segment.b,
-            segment.strength,
-            segment.t + (segment.type == LineType::mesh ? kMeshBehind : 0.0F),
-            static_cast<std::uint32_t>(style),
-            segment.level == 0,
-            segment.left_in_front,
-            segment.width_scale,
-            segment.gap};
-}
 
 float InkSettings::widest() const {
     float widest = 0.0F;
@@ -85,7 +61,10 @@ InkTile::InkTile(const InkSettings& settings) : settings_(settings) {
             return layer.color == style.color && layer.opacity == style.opacity;
         });
         layer_of_style_.push_back(static_cast<std::size_t>(found - layers_.begin()));
-        if (found == layers_.end()) layers_.push_back({style.color, style.opacity, false, {}, {}});
+        if (found != layers_.end()) continue;
+        Layer& layer = layers_.emplace_back();
+        layer.color = style.color;
+        layer.opacity = style.opacity;
     }
     if (settings.profile.kind == Metric::Kind::solid) return;
     for (int k = 0; k < kProfileEntries; ++k) {
@@ -106,49 +85,48 @@ void InkTile::begin(int x0, int y0, int width, int height) {
     touched_.assign(across_ * blocks(height), 0);
     for (Layer& layer : layers_) layer.used = false;
     empty_ = true;
+    waiting_.count = 0;
+    waiting_.width = width;
+    waiting_.height = height;
 }
 
 void InkTile::draw(const InkStroke& stroke, float width_scale) {
-    const float width = settings_.styles[stroke.style].width_px * width_scale;
-    const float reach = 0.5F * width + kHalfDiagonal;
-    const auto first = [&](float a, float b, int origin) {
-        const int pixel = static_cast<int>(std::floor(std::min(a, b) - reach)) - origin;
-        return std::max(pixel, 0) / kBlockSide;
-    };
-    const auto last = [&](float a, float b, int origin, int size) {
-        const int pixel = static_cast<int>(std::floor(std::max(a, b) + reach)) - origin;
-        return pixel < 0 ? -1 : std::min(pixel, size - 1) / kBlockSide;
-    };
-    const BlockRange range{
-        first(stroke.a.x, stroke.b.x, x0_), last(stroke.a.x, stroke.b.x, x0_, width_),
-        first(stroke.a.y, stroke.b.y, y0_), last(stroke.a.y, stroke.b.y, y0_, height_)};
-    if (range.left > range.right || range.top > range.bottom) return;
-
-    Layer& layer = layer_of(stroke.style);
-    const Band band = make_band(stroke, width);
-    const InkPlanes planes{static_cast<float>(x0_) + 0.5F,
-                           static_cast<float>(y0_) + 0.5F,
-                           across_,
-                           layer.coverage.data(),
-                           layer.t.empty() ? nullptr : layer.t.data(),
-                           touched_.data()};
-    if (profile_.empty()) {
-        draw_solid(band, range, planes);
-    } else {
-        draw_soft(band, range, planes, profile_);
-    }
+    const int lane = waiting_.count++;
+    StrokeLanes& strokes = waiting_.strokes;
+    strokes.ax[lane] = stroke.a.x;
+    strokes.ay[lane] = stroke.a.y;
+    strokes.bx[lane] = stroke.b.x;
+    strokes.by[lane] = stroke.b.y;
+    strokes.width[lane] = settings_.styles[stroke.style].width_px * width_scale;
+    strokes.strength[lane] = stroke.strength;
+    strokes.t[lane] = stroke.t;
+    waiting_.planes[static_cast<std::size_t>(lane)] = &layer_of(stroke.style).planes;
+    if (waiting_.count == kLanes) draw_waiting();
 }
 
-InkTile::Layer& InkTile::layer_of(std::size_t style) {
-    Layer& layer = layers_[layer_of_style_[style]];
-    if (!layer.used) {
-        layer.coverage.assign(blocks(), {});
-        // What lies on top matters only where inks differ.
-        if (layers_.size() > 1) layer.t.assign(blocks(), Lanes<float>::filled(kInfinity));
-        layer.used = true;
-        empty_ = false;
+void InkTile::draw_waiting() {
+    if (waiting_.count == 0) return;
+    if (profile_.empty()) {
+        draw_solid(waiting_);
+    } else {
+        draw_soft(waiting_, profile_);
     }
-    return layer;
+    waiting_.count = 0;
+}
+
+/// Clears it.
+void InkTile::start(Layer& layer) {
+    layer.coverage.assign(blocks(), {});
+    // What lies on top matters only where inks differ.
+    if (layers_.size() > 1) layer.t.assign(blocks(), Lanes<float>::filled(kInfinity));
+    layer.planes = {static_cast<float>(x0_) + 0.5F,
+                    static_cast<float>(y0_) + 0.5F,
+                    across_,
+                    layer.coverage.data(),
+                    layer.t.empty() ? nullptr : layer.t.data(),
+                    touched_.data()};
+    layer.used = true;
+    empty_ = false;
 }
 
 void InkTile::draw_faces(int x, int y, const Lanes<float>& distance, const Lanes<float>& nx,
@@ -171,6 +149,7 @@ void InkTile::draw_faces(int x, int y, const Lanes<float>& distance, const Lanes
 }
 
 void InkTile::finish() {
+    draw_waiting();
     if (empty_) return;
     used_.clear();
     for (const Layer& layer : layers_) {
@@ -191,6 +170,10 @@ void InkTile::finish() {
 void InkTile::finish_alone(const Layer& layer) {
     uniform_ = layer.color;
     for (std::size_t k = 0; k < alpha_.size(); ++k) {
+        if (touched_[k] == 0) {
+            alpha_[k] = {};
+            continue;
+        }
         for (int i = 0; i < kLanes; ++i) alpha_[k][i] = layer.coverage[k][i] * layer.opacity;
     }
 }

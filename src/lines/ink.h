@@ -8,11 +8,17 @@
 
 #include "base/color.h"
 #include "base/lanes.h"
+#include "lines/ink_kernels.h"
 #include "lines/line_type.h"
 #include "lines/segment.h"
 #include "lines/strength.h"
 
 namespace ink {
+
+/// The lines between a mesh's faces run up to its outline, and in front of it where the surface
+/// turns away. Taking them to lie this much farther behind, in a scene of size 1, keeps them below
+/// the outline, and above what is well behind.
+inline constexpr float kMeshBehind = 0.1F;
 
 /// How lines of one type are drawn.
 struct LineStyle {
@@ -43,7 +49,17 @@ struct InkStroke {
     float width_scale = 1.0F;  ///< as in Segment, as is the gap
     float gap = 0.0F;
 };
-InkStroke make_ink_stroke(const Segment& segment, std::size_t style);
+inline InkStroke make_ink_stroke(const Segment& segment, std::size_t style) {
+    return {segment.a,
+            segment.b,
+            segment.strength,
+            segment.t + (segment.type == LineType::mesh ? kMeshBehind : 0.0F),
+            static_cast<std::uint32_t>(style),
+            segment.level == 0,
+            segment.left_in_front,
+            segment.width_scale,
+            segment.gap};
+}
 
 /// Ink on a rectangle of pixels, before it is mixed with the picture. Its planes go by blocks of
 /// 4 x 4 pixels, from the rectangle's upper left corner on, row by row.
@@ -53,7 +69,8 @@ class InkTile {
 
     /// Clears the tile and moves it to pixels [x0, x0 + width) x [y0, y0 + height).
     void begin(int x0, int y0, int width, int height);
-    /// Adds a stroke, its width times `width_scale`; what lies beyond the tile is left out.
+    /// Adds a stroke, its width times `width_scale`; what lies beyond the tile is left out. Strokes
+    /// may wait for others until finish().
     void draw(const InkStroke& stroke, float width_scale = 1.0F);
     /// Adds a segment in the style of its type.
     void draw(const Segment& segment) {
@@ -96,9 +113,16 @@ class InkTile {
         bool used = false;
         std::vector<Lanes<float>> coverage;
         std::vector<Lanes<float>> t;  ///< of the nearest line that inks the pixel, if it matters
+        InkPlanes planes{};           ///< these, for strokes
     };
 
-    Layer& layer_of(std::size_t style);
+    Layer& layer_of(std::size_t style) {
+        Layer& layer = layers_[layer_of_style_[style]];
+        if (!layer.used) start(layer);
+        return layer;
+    }
+    void start(Layer& layer);
+    void draw_waiting();
     void finish_alone(const Layer& layer);
     void finish_pixel(std::size_t k, std::span<const Layer* const> used);
 
@@ -106,6 +130,7 @@ class InkTile {
     std::vector<float> profile_;  ///< of soft lines, as draw_soft() wants it
     std::vector<std::size_t> layer_of_style_;
     std::vector<Layer> layers_;
+    InkBatch waiting_{};  ///< strokes
     std::vector<const Layer*> used_;
     std::vector<const Layer*> here_;  ///< the layers that ink a pixel, the nearest first
     std::vector<Lanes<float>> alpha_;

@@ -8,6 +8,7 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "base/vec.h"
 #include "lines/coverage_lanes-inl.h"
 
 #ifndef INK_BLOCK_OFFSETS
@@ -34,16 +35,70 @@ namespace ink::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// Distances from a band's middle line.
-class BandFrame {
+using Integers = hn::RebindToSigned<Floats>;
+constexpr Integers kIntegers;
+using Integer = hn::Vec<Integers>;
+
+/// Strokes as straight bands, and the blocks of the tile that each may ink.
+struct Bands {
+    Lanes<float> along_x, along_y;  ///< unit directions
+    Lanes<float> length, half;      ///< half: of the width
+    SquareCoverage::Shape shape;
+    Lanes<std::int32_t> left, right, top, bottom;  ///< inclusive; maybe none
+};
+
+/// Blocks in one direction that have a pixel's centre within `reach` of both ends of a stroke.
+HWY_INLINE void find_blocks(Number a, Number b, Number reach, float first_centre, int size, int i,
+                            Lanes<std::int32_t>& first, Lanes<std::int32_t>& last) {
+    const Number low = hn::Sub(hn::Sub(hn::Min(a, b), reach), set(first_centre));
+    const Number high = hn::Sub(hn::Add(hn::Max(a, b), reach), set(first_centre));
+    const Integer low_pixel = hn::Max(hn::ConvertTo(kIntegers, hn::Ceil(low)), hn::Zero(kIntegers));
+    const Integer high_pixel =
+        hn::Min(hn::ConvertTo(kIntegers, hn::Floor(high)), hn::Set(kIntegers, size - 1));
+    static_assert(kBlockSide == 4);
+    hn::Store(hn::ShiftRight<2>(low_pixel), kIntegers, first.data() + i);
+    hn::Store(hn::ShiftRight<2>(high_pixel), kIntegers, last.data() + i);
+}
+
+/// `beyond`: how far from a band's edge the centre of a pixel may lie that it inks.
+HWY_INLINE void make_bands(const InkBatch& batch, float beyond, Bands& bands) {
+    const StrokeLanes& strokes = batch.strokes;
+    const InkPlanes& planes = *batch.planes[0];
+    for (int i = 0; i < kLanes; i += kStep) {
+        const Number ax = load(strokes.ax, i);
+        const Number ay = load(strokes.ay, i);
+        const Number bx = load(strokes.bx, i);
+        const Number by = load(strokes.by, i);
+        const Number dx = hn::Sub(bx, ax);
+        const Number dy = hn::Sub(by, ay);
+        const Number length = hn::Sqrt(hn::Add(hn::Mul(dx, dx), hn::Mul(dy, dy)));
+        const auto is_point = hn::Le(length, hn::Zero(kFloats));
+        const Number scale = hn::Div(set(1.0F), hn::IfThenElse(is_point, set(1.0F), length));
+        const Number along_x = hn::IfThenElse(is_point, set(1.0F), hn::Mul(dx, scale));
+        const Number along_y = hn::Mul(dy, scale);
+        const Number half = hn::Mul(load(strokes.width, i), set(0.5F));
+        const Number reach = hn::Add(half, set(beyond));
+        hn::Store(along_x, kFloats, bands.along_x.data() + i);
+        hn::Store(along_y, kFloats, bands.along_y.data() + i);
+        hn::Store(length, kFloats, bands.length.data() + i);
+        hn::Store(half, kFloats, bands.half.data() + i);
+        SquareCoverage(along_y, along_x).store(bands.shape, i);
+        find_blocks(ax, bx, reach, planes.x0, batch.width, i, bands.left, bands.right);
+        find_blocks(ay, by, reach, planes.y0, batch.height, i, bands.top, bands.bottom);
+    }
+}
+
+/// A band that is being drawn, a number in all lanes.
+class Band {
   public:
-    HWY_INLINE explicit BandFrame(const Band& band)
-        : ax_(set(band.a.x)),
-          ay_(set(band.a.y)),
-          along_x_(set(band.along.x)),
-          along_y_(set(band.along.y)),
-          length_(set(band.length)) {}
-    /// Of the centres of a block's pixels from the i-th on; (x, y) is that of its first pixel.
+    HWY_INLINE Band(const StrokeLanes& strokes, const Bands& bands, int lane)
+        : ax_(set(strokes.ax[lane])),
+          ay_(set(strokes.ay[lane])),
+          along_x_(set(bands.along_x[lane])),
+          along_y_(set(bands.along_y[lane])),
+          length_(set(bands.length[lane])) {}
+    /// From its middle line to the centres of a block's pixels from the i-th on; (x, y) is that of
+    /// its first pixel.
     HWY_INLINE Number distance(float x, float y, int i) const {
         const Number rx = hn::Sub(hn::Add(set(x), load(kBlockOffsets.x, i)), ax_);
         const Number ry = hn::Sub(hn::Add(set(y), load(kBlockOffsets.y, i)), ay_);
@@ -57,99 +112,106 @@ class BandFrame {
     Number ax_, ay_, along_x_, along_y_, length_;
 };
 
-/// Where there is ink, `nearest` becomes at most `t`.
-HWY_INLINE void keep_nearest(Number ink, float t, float* nearest) {
+/// Adds ink to sixteen pixels of a block from the i-th on.
+HWY_INLINE void add_ink(Number ink, float t, const InkPlanes& planes, std::size_t k, int i,
+                        bool& any, bool& full) {
+    float* most = planes.coverage[k].data() + i;
     const auto inked = hn::Gt(ink, hn::Zero(kFloats));
+    const Number covered = hn::Max(hn::Load(kFloats, most), ink);
+    hn::Store(covered, kFloats, most);
+    any = any || !hn::AllFalse(kFloats, inked);
+    if (planes.t == nullptr) {
+        full = full && hn::AllTrue(kFloats, hn::Ge(covered, set(1.0F)));
+        return;
+    }
+    full = false;
+    float* nearest = planes.t[k].data() + i;
     const Number at = hn::IfThenElse(inked, set(t), set(kInfinity));
     hn::Store(hn::Min(hn::Load(kFloats, nearest), at), kFloats, nearest);
 }
 
-/// Calls `draw(k, x, y)` for those blocks of a range that a band may ink, and marks them; (x, y) is
-/// the centre of the block's first pixel.
-template <class Draw>
-HWY_INLINE void for_each_block(const Band& band, const BlockRange& range, const InkPlanes& planes,
-                               const Draw& draw) {
+/// Draws stroke `lane` of a batch: `ink_at(x, y, i)` is the ink of a block's pixels from the i-th
+/// on, (x, y) the centre of its first pixel.
+template <class InkAt>
+HWY_INLINE void draw_blocks(const InkBatch& batch, const Bands& bands, int lane,
+                            const InkAt& ink_at) {
     constexpr float kHalfBlock = 0.5F * (kBlockSide - 1);
-    const Vec2f along = band.along;
+    // Of narrower ones hardly any block is out of reach, and to see which costs more.
+    constexpr float kNarrow = 1.5F;
+    const InkPlanes& planes = *batch.planes[static_cast<std::size_t>(lane)];
+    const float ax = batch.strokes.ax[lane];
+    const float ay = batch.strokes.ay[lane];
+    const float t = batch.strokes.t[lane];
+    const float along_x = bands.along_x[lane];
+    const float along_y = bands.along_y[lane];
     // How far a block's pixels reach from its middle, along the band and across it.
-    const float extent = 0.5F * kBlockSide * (std::abs(along.x) + std::abs(along.y));
-    const float most = band.half + extent;
-    for (int row = range.top; row <= range.bottom; ++row) {
+    const float extent = 0.5F * kBlockSide * (std::abs(along_x) + std::abs(along_y));
+    const float half = bands.half[lane];
+    const float most = half <= kNarrow ? kInfinity : half + extent;
+    const float last = bands.length[lane] + most;
+    for (int row = bands.top[lane]; row <= bands.bottom[lane]; ++row) {
         const float y = planes.y0 + static_cast<float>(row * kBlockSide);
-        const float ry = y + kHalfBlock - band.a.y;
-        for (int column = range.left; column <= range.right; ++column) {
+        const float ry = y + kHalfBlock - ay;
+        for (int column = bands.left[lane]; column <= bands.right[lane]; ++column) {
             const float x = planes.x0 + static_cast<float>(column * kBlockSide);
-            const float rx = x + kHalfBlock - band.a.x;
-            const float s = rx * along.x + ry * along.y;
-            if (std::abs(ry * along.x - rx * along.y) > most || s < -most ||
-                s > band.length + most) {
-                continue;
-            }
+            const float rx = x + kHalfBlock - ax;
+            const float s = rx * along_x + ry * along_y;
+            if (std::abs(ry * along_x - rx * along_y) > most || s < -most || s > last) continue;
             const std::size_t k =
                 static_cast<std::size_t>(row) * planes.across + static_cast<std::size_t>(column);
             std::uint8_t& touched = planes.touched[k];
             if (touched == kFull) continue;
-            touched = kTouched;
-            draw(k, x, y);
+            bool any = false;
+            bool full = true;
+            for (int i = 0; i < kLanes; i += kStep) {
+                add_ink(ink_at(x, y, i), t, planes, k, i, any, full);
+            }
+            touched = full ? kFull : static_cast<std::uint8_t>(touched | (any ? kTouched : 0));
         }
     }
 }
 
-/// A band that is `kWide` reaches beyond every pixel that its far edge could cut.
-template <bool kWide>
-HWY_INLINE void draw_blocks(const Band& band, const BlockRange& range, const InkPlanes& planes) {
-    const SquareCoverage coverage(set(band.along.y), set(band.along.x));
-    const BandFrame frame(band);
-    const Number half = set(band.half);
-    const Number strength = set(band.strength);
-    for_each_block(band, range, planes, [&](std::size_t k, float x, float y) HWY_ATTR {
-        bool full = planes.t == nullptr;
-        for (int i = 0; i < kLanes; i += kStep) {
-            const Number distance = frame.distance(x, y, i);
-            Number area = coverage(hn::Sub(half, distance));
-            if constexpr (!kWide) {
-                area = hn::Sub(area, coverage(hn::Sub(hn::Neg(half), distance)));
-            }
-            const Number ink = hn::Mul(area, strength);
-            float* most = planes.coverage[k].data() + i;
-            const Number covered = hn::Max(hn::Load(kFloats, most), ink);
-            hn::Store(covered, kFloats, most);
-            if (planes.t == nullptr) {
-                full = full && hn::AllTrue(kFloats, hn::Ge(covered, set(1.0F)));
-            } else {
-                keep_nearest(ink, band.t, planes.t[k].data() + i);
-            }
-        }
-        if (full) planes.touched[k] = kFull;
-    });
-}
-
-void draw_band(const Band& band, const BlockRange& range, const InkPlanes& planes) {
+void draw_solid_batch(const InkBatch& batch) {
+    // A band that is wider on either side reaches beyond every pixel that its far edge could cut.
     constexpr float kWideHalf = 0.7072F;
-    if (band.half >= kWideHalf) {
-        draw_blocks<true>(band, range, planes);
-    } else {
-        draw_blocks<false>(band, range, planes);
+    constexpr float kHalfDiagonal = 0.75F;  // of a pixel, and a little more
+    Bands bands;
+    make_bands(batch, kHalfDiagonal, bands);
+    for (int lane = 0; lane < batch.count; ++lane) {
+        const Band band(batch.strokes, bands, lane);
+        const SquareCoverage coverage(bands.shape, lane);
+        const Number half = set(bands.half[lane]);
+        const Number strength = set(batch.strokes.strength[lane]);
+        if (bands.half[lane] >= kWideHalf) {
+            draw_blocks(batch, bands, lane, [&](float x, float y, int i) HWY_ATTR {
+                return hn::Mul(coverage(hn::Sub(half, band.distance(x, y, i))), strength);
+            });
+            continue;
+        }
+        draw_blocks(batch, bands, lane, [&](float x, float y, int i) HWY_ATTR {
+            const Number distance = band.distance(x, y, i);
+            const Number near_side = coverage(hn::Sub(half, distance));
+            const Number far_side = coverage(hn::Sub(hn::Neg(half), distance));
+            return hn::Mul(hn::Sub(near_side, far_side), strength);
+        });
     }
 }
 
-void draw_soft_band(const Band& band, const BlockRange& range, const InkPlanes& planes,
-                    std::span<const float> profile) {
-    const hn::RebindToSigned<Floats> indices;
-    const BandFrame frame(band);
-    const Number half = set(band.half);
-    const Number strength = set(band.strength);
+void draw_soft_batch(const InkBatch& batch, std::span<const float> profile) {
+    constexpr float kRounding = 0.01F;
     const Number entries = set(static_cast<float>(profile.size() - 1));
-    for_each_block(band, range, planes, [&](std::size_t k, float x, float y) HWY_ATTR {
-        for (int i = 0; i < kLanes; i += kStep) {
-            const Number u = hn::Min(hn::Div(frame.distance(x, y, i), half), set(1.0F));
-            const auto entry = hn::ConvertTo(indices, hn::Mul(u, entries));
-            const Number ink = hn::Mul(hn::GatherIndex(kFloats, profile.data(), entry), strength);
-            float* most = planes.coverage[k].data() + i;
-            hn::Store(hn::Max(hn::Load(kFloats, most), ink), kFloats, most);
-            if (planes.t != nullptr) keep_nearest(ink, band.t, planes.t[k].data() + i);
-        }
-    });
+    Bands bands;
+    make_bands(batch, kRounding, bands);
+    for (int lane = 0; lane < batch.count; ++lane) {
+        const Band band(batch.strokes, bands, lane);
+        const Number half = set(bands.half[lane]);
+        const Number strength = set(batch.strokes.strength[lane]);
+        draw_blocks(batch, bands, lane, [&](float x, float y, int i) HWY_ATTR {
+            const Number u = hn::Min(hn::Div(band.distance(x, y, i), half), set(1.0F));
+            const auto entry = hn::ConvertTo(kIntegers, hn::Mul(u, entries));
+            return hn::Mul(hn::GatherIndex(kFloats, profile.data(), entry), strength);
+        });
+    }
 }
 
 }  // namespace ink::HWY_NAMESPACE
@@ -159,16 +221,13 @@ HWY_AFTER_NAMESPACE();
 
 namespace ink {
 
-HWY_EXPORT(draw_band);
-HWY_EXPORT(draw_soft_band);
+HWY_EXPORT(draw_solid_batch);
+HWY_EXPORT(draw_soft_batch);
 
-void draw_solid(const Band& band, const BlockRange& range, const InkPlanes& planes) {
-    HWY_DYNAMIC_DISPATCH(draw_band)(band, range, planes);
-}
+void draw_solid(const InkBatch& batch) { HWY_DYNAMIC_DISPATCH(draw_solid_batch)(batch); }
 
-void draw_soft(const Band& band, const BlockRange& range, const InkPlanes& planes,
-               std::span<const float> profile) {
-    HWY_DYNAMIC_DISPATCH(draw_soft_band)(band, range, planes, profile);
+void draw_soft(const InkBatch& batch, std::span<const float> profile) {
+    HWY_DYNAMIC_DISPATCH(draw_soft_batch)(batch, profile);
 }
 
 }  // namespace ink

@@ -40,20 +40,6 @@ float crease_strength(const LocateSettings& settings, float angle) {
                       settings.crease_full_deg * kRadiansPerDegree, angle);
 }
 
-bool needs_check(const LocateSettings& settings, const Prediction& p) {
-    using Kind = Prediction::Kind;
-    // The check would repeat what the edge's end has seen.
-    const bool known = (p.kind == Kind::first_limb && p.at + settings.check_offset >= 1.0F) ||
-                       (p.kind == Kind::second_limb && p.at <= settings.check_offset);
-    return !known && p.squared_radius >= settings.least_checked * settings.least_checked;
-}
-
-float checked_place(const LocateSettings& settings, const Prediction& p) {
-    if (p.kind == Prediction::Kind::first_limb) return p.at + settings.check_offset;
-    if (p.kind == Prediction::Kind::second_limb) return p.at - settings.check_offset;
-    return p.at;
-}
-
 /// What a prediction says needs no measuring: a limb hides, a seam joins.
 bool cross_as_predicted(const Viewpoint& viewpoint, const LocateSettings& settings,
                         const Prediction& p, Vec2f a, Vec2f b, const PredictedSide& first,

@@ -80,8 +80,18 @@ struct PredictedSide {
 };
 
 /// Whether a ray must confirm a prediction, and where along the edge it goes, in [0, 1].
-bool needs_check(const LocateSettings& settings, const Prediction& prediction);
-float checked_place(const LocateSettings& settings, const Prediction& prediction);
+inline bool needs_check(const LocateSettings& settings, const Prediction& p) {
+    using Kind = Prediction::Kind;
+    // The check would repeat what the edge's end has seen.
+    const bool known = (p.kind == Kind::first_limb && p.at + settings.check_offset >= 1.0F) ||
+                       (p.kind == Kind::second_limb && p.at <= settings.check_offset);
+    return !known && p.squared_radius >= settings.least_checked * settings.least_checked;
+}
+inline float checked_place(const LocateSettings& settings, const Prediction& p) {
+    if (p.kind == Prediction::Kind::first_limb) return p.at + settings.check_offset;
+    if (p.kind == Prediction::Kind::second_limb) return p.at - settings.check_offset;
+    return p.at;
+}
 
 /// The crossing of the edge from `a` to `b` that a prediction tells of, but for its edge. False if
 /// there is no line: two balls of one geometry that meet at a flat angle.

@@ -37,17 +37,30 @@ float shifted(float value, std::int32_t shift, float most) {
 }  // namespace
 
 void EdgeSmoothing::begin(const Tile& tile) {
+    clear_touched();
     tile_ = tile;
     // Cells reach over pixels to the right and below.
     const auto blocks = [](int pixels) {
         return static_cast<std::size_t>((pixels + kBlockSide) / kBlockSide);
     };
     across_ = blocks(tile.x1 - tile.x0);
+    stride_ = across_ * kBlockSide;
     const std::size_t size = across_ * blocks(tile.y1 - tile.y0);
-    shifts_.resize(size);
+    if (shifts_.size() < size * kLanes) shifts_.resize(size * kLanes);
     touched_.assign(size, 0);
     any_ = false;
     waiting_ = 0;
+}
+
+void EdgeSmoothing::clear_touched() {
+    if (!any_) return;
+    for (std::size_t k = 0; k < touched_.size(); ++k) {
+        if (touched_[k] == 0) continue;
+        ColorShift* row =
+            shifts_.data() + k / across_ * kBlockSide * stride_ + k % across_ * kBlockSide;
+        for (int j = 0; j < kBlockSide; ++j, row += stride_)
+            std::fill_n(row, kBlockSide, ColorShift{});
+    }
 }
 
 void EdgeSmoothing::add(const Segment& segment, const PixelColor& left, const PixelColor& right) {
@@ -69,46 +82,61 @@ void EdgeSmoothing::finish() {
     waiting_ = 0;
 }
 
+namespace {
+
+/// Adds a change of colour, as far as `share` goes, to a pixel.
+HWY_INLINE void add_share(Four change, float share, ColorShift& shift) {
+    const Four scaled = hn::Mul(change, set(share * kFixedPoint));
+    const auto added = hn::ConvertTo(kFourIntegers, hn::Floor(hn::Add(scaled, set(0.5F))));
+    hn::StoreU(hn::Add(hn::LoadU(kFourIntegers, shift.data()), added), kFourIntegers, shift.data());
+}
+
+}  // namespace
+
 /// Adds one of the waiting segments' colour changes to the pixels at the corners of its cell:
 /// towards the right side's colour for corners on the left, and back.
 void EdgeSmoothing::spread(int k) {
-    const auto change = hn::LoadU(kFour, changes_[static_cast<std::size_t>(k)].data());
-    for (int corner = 0; corner < 4; ++corner) {
-        const int i = shares_.cell_x[k] + corner % 2;
-        const int j = shares_.cell_y[k] + corner / 2;
-        const int x = (q_ == 1 ? i : floor_divide(i, q_)) - tile_.x0;
-        const int y = (q_ == 1 ? j : floor_divide(j, q_)) - tile_.y0;
-        if (x < 0 || y < 0 || x > tile_.x1 - tile_.x0 || y > tile_.y1 - tile_.y0) continue;
-        const float share = shares_.area[static_cast<std::size_t>(corner)][k] * kFixedPoint;
-        std::int32_t* const sum = shift_of(x, y).data();
-        const auto added = hn::ConvertTo(
-            kFourIntegers, hn::Floor(hn::Add(hn::Mul(change, set(share)), set(0.5F))));
-        hn::StoreU(hn::Add(hn::LoadU(kFourIntegers, sum), added), kFourIntegers, sum);
-    }
+    const int x = shares_.cell_x[k] - tile_.x0;
+    const int y = shares_.cell_y[k] - tile_.y0;
+    const bool inside = x >= 0 && y >= 0 && x < tile_.x1 - tile_.x0 && y < tile_.y1 - tile_.y0;
+    if (q_ != 1 || !inside) return spread_beyond(k);
+    const Four change = hn::LoadU(kFour, changes_[static_cast<std::size_t>(k)].data());
+    ColorShift* const upper = shifts_.data() + pixel(x, y);
+    ColorShift* const lower = upper + stride_;
+    add_share(change, shares_.area[0][k], upper[0]);
+    add_share(change, shares_.area[1][k], upper[1]);
+    add_share(change, shares_.area[2][k], lower[0]);
+    add_share(change, shares_.area[3][k], lower[1]);
+    touch(x, y);
+    touch(x + 1, y);
+    touch(x, y + 1);
+    touch(x + 1, y + 1);
+    any_ = true;
 }
 
-/// Of a pixel, by its place in the tile, for what adds to it.
-ColorShift& EdgeSmoothing::shift_of(int x, int y) {
-    const auto column = static_cast<unsigned>(x);
-    const auto row = static_cast<unsigned>(y);
-    const std::size_t k = row / kBlockSide * across_ + column / kBlockSide;
-    if (touched_[k] == 0) {
-        touched_[k] = 1;
-        shifts_[k] = {};
+/// The same of a cell that may reach over the tile's border, or where a pixel has several.
+void EdgeSmoothing::spread_beyond(int k) {
+    const Four change = hn::LoadU(kFour, changes_[static_cast<std::size_t>(k)].data());
+    for (int corner = 0; corner < 4; ++corner) {
+        const int x = floor_divide(shares_.cell_x[k] + corner % 2, q_) - tile_.x0;
+        const int y = floor_divide(shares_.cell_y[k] + corner / 2, q_) - tile_.y0;
+        if (x < 0 || y < 0 || x > tile_.x1 - tile_.x0 || y > tile_.y1 - tile_.y0) continue;
+        add_share(change, shares_.area[static_cast<std::size_t>(corner)][k], shifts_[pixel(x, y)]);
+        touch(x, y);
         any_ = true;
     }
-    return shifts_[k][row % kBlockSide * kBlockSide + column % kBlockSide];
 }
 
 void EdgeSmoothing::apply(int x, int y, ColorPacket& colors) const {
-    const ShiftBlock& shifts = shifts_[block(x, y)];
+    const ColorShift* const shifts = shifts_.data() + pixel(x - tile_.x0, y - tile_.y0);
     const auto inside =
         hn::Gt(hn::Iota(kFourIntegers, 0), hn::Set(kFourIntegers, x == tile_.x0 ? 0 : -1));
     for (int row = y == tile_.y0 ? 1 : 0; row < kBlockSide; ++row) {
         const auto first = static_cast<std::size_t>(row * kBlockSide);
         // Four pixels of four channels into four channels of four pixels.
         const auto load = [&](std::size_t pixel) {
-            return hn::LoadU(kFourIntegers, shifts[first + pixel].data());
+            const auto line = static_cast<std::size_t>(row) * stride_;
+            return hn::LoadU(kFourIntegers, shifts[line + pixel].data());
         };
         const auto lower = [&](std::size_t pixel) {
             return hn::InterleaveLower(kFourIntegers, load(pixel), load(pixel + 1));
@@ -134,19 +162,22 @@ void EdgeSmoothing::apply(int x, int y, ColorPacket& colors) const {
     }
 }
 
-ColorShift EdgeSmoothing::shift_at(int x, int y) const {
-    const std::size_t k = block(x, y);
-    if (touched_[k] == 0) return {};
-    const int lane = (y - tile_.y0) % kBlockSide * kBlockSide + (x - tile_.x0) % kBlockSide;
-    return shifts_[k][static_cast<std::size_t>(lane)];
-}
-
-void EdgeSmoothing::take_fringe(Fringe& fringe) const {
+void EdgeSmoothing::copy_fringe(Fringe& fringe) const {
     if (!any_) return;
-    for (int x = tile_.x0; x < tile_.x1; ++x) fringe.own.push_back(shift_at(x, tile_.y0));
-    for (int y = tile_.y0 + 1; y < tile_.y1; ++y) fringe.own.push_back(shift_at(tile_.x0, y));
-    for (int y = tile_.y0; y < tile_.y1; ++y) fringe.right.push_back(shift_at(tile_.x1, y));
-    for (int x = tile_.x0; x <= tile_.x1; ++x) fringe.below.push_back(shift_at(x, tile_.y1));
+    const int width = tile_.x1 - tile_.x0;
+    const int height = tile_.y1 - tile_.y0;
+    const auto row = [&](int y, int count, std::vector<ColorShift>& to) {
+        to.insert(to.end(), &shifts_[pixel(0, y)], &shifts_[pixel(0, y)] + count);
+    };
+    const auto column = [&](int x, int first, std::vector<ColorShift>& to) {
+        for (int y = first; y < height; ++y) to.push_back(shifts_[pixel(x, y)]);
+    };
+    fringe.own.reserve(static_cast<std::size_t>(width + height - 1));
+    row(0, width, fringe.own);
+    column(0, 1, fringe.own);
+    fringe.right.reserve(static_cast<std::size_t>(height));
+    column(width, 0, fringe.right);
+    row(height, width + 1, fringe.below);
 }
 
 void finish_fringe(std::span<const Tile> tiles, const std::vector<const Fringe*>& fringes,

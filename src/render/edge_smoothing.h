@@ -50,9 +50,9 @@ class EdgeSmoothing {
     void apply(int x, int y, ColorPacket& colors) const;
     bool changes(int x, int y) const { return any_ && touched_[block(x, y)] != 0; }
 
-    /// Moves what there is for the fringe, and beyond it. The colours of its pixels are the
+    /// Copies what there is for the fringe, and beyond it. The colours of its pixels are the
     /// caller's.
-    void take_fringe(Fringe& fringe) const;
+    void copy_fringe(Fringe& fringe) const;
 
   private:
     std::size_t block(int x, int y) const {
@@ -60,18 +60,26 @@ class EdgeSmoothing {
         const auto row = static_cast<std::size_t>(y - tile_.y0) / kBlockSide;
         return row * across_ + column;
     }
-    ColorShift shift_at(int x, int y) const;
-    ColorShift& shift_of(int x, int y);
+    /// Of pixel (x, y) of the tile.
+    std::size_t pixel(int x, int y) const {
+        return static_cast<std::size_t>(y) * stride_ + static_cast<std::size_t>(x);
+    }
+    void clear_touched();
     void spread(int k);
+    void spread_beyond(int k);
+    void touch(int x, int y) {
+        touched_[static_cast<std::size_t>(y / kBlockSide) * across_ +
+                 static_cast<std::size_t>(x / kBlockSide)] = 1;
+    }
 
     int q_;
     Tile tile_{};
     std::size_t across_ = 0;  ///< blocks, one more than the tile's
+    std::size_t stride_ = 0;  ///< pixels of those blocks
     bool any_ = false;
-    using ShiftBlock = std::array<ColorShift, kLanes>;
-    std::vector<ShiftBlock> shifts_;
-    std::vector<std::uint8_t> touched_;
-    int waiting_ = 0;  ///< segments
+    std::vector<ColorShift> shifts_;     ///< row by row; zero but in blocks that are touched
+    std::vector<std::uint8_t> touched_;  ///< of the blocks
+    int waiting_ = 0;                    ///< segments
     SegmentEnds ends_{};
     std::array<PixelColor, kLanes> changes_{};  ///< from their left to their right
     CornerShares shares_;

@@ -101,6 +101,7 @@ Edges::Edges(const Pipeline& shared)
       styles_by_object(has_object_rules(shared.settings)),
       tells_inner(has_inner_rules(shared.settings)),
       style_levels(levels_of(shared)),
+      styles_by_type(!styles_by_object && !tells_inner && style_levels == 1),
       ink(ink_settings(shared)),
       halo_px(static_cast<float>(shared.settings.halo_px())),
       depth_range(shared.shader.depth_cue().range()) {
@@ -157,7 +158,7 @@ bool Edges::outlines_cover_faces() const {
            covers(LineType::self_occlusion) && covers(LineType::boundary);
 }
 
-std::size_t Edges::style_of(const Segment& segment) const {
+std::size_t Edges::find_style(const Segment& segment) const {
     const auto type = static_cast<std::size_t>(segment.type);
     const bool by_object = styles_by_object && segment.owner != kBackground;
     const std::size_t object = by_object ? pipeline.ids.object_of(segment.owner) : 0;

@@ -30,7 +30,11 @@ struct Edges {
     explicit Edges(const Pipeline& shared);
 
     /// Index into the ink's styles, of which those of hidden lines come last.
-    std::size_t style_of(const Segment& segment) const;
+    std::size_t style_of(const Segment& segment) const {
+        if (styles_by_type && !segment.hidden) return static_cast<std::size_t>(segment.type);
+        return find_style(segment);
+    }
+    std::size_t find_style(const Segment& segment) const;
     /// Index of the tile that a point was searched in.
     std::size_t search_tile_at(Vec2f point) const;
     std::size_t search_tiles_across() const;
@@ -73,8 +77,9 @@ struct Edges {
     LocateSettings locate;
     LineTypes wanted;
     bool styles_by_object;
-    bool tells_inner;  ///< lines within one whole have styles of their own
-    int style_levels;  ///< levels with styles of their own, and those beyond: 1 if all are alike
+    bool tells_inner;     ///< lines within one whole have styles of their own
+    int style_levels;     ///< levels with styles of their own, and those beyond: 1 if all are alike
+    bool styles_by_type;  ///< and by nothing else, but for hidden lines
     /// Styles by type, object after object where they have styles of their own, and all that level
     /// after level likewise; then, if they are told apart, all that for lines within one whole.
     InkSettings ink;

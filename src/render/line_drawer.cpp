@@ -2,6 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <cstring>
+
+#include <hwy/highway.h>
 
 #include "lines/coverage.h"
 
@@ -195,23 +199,41 @@ void LineDrawer::for_each_near_tile(const Tile& tile, const std::vector<TileLine
 
 /// The strokes that can change pixels of a tile.
 void LineDrawer::gather(const Tile& tile, const std::vector<TileLines>& found) {
-    near_.clear();
-    middles_.clear();
+    namespace hn = hwy::HWY_NAMESPACE;
+    // Four lanes are what every processor has.
+    constexpr hn::FixedTag<float, 4> kEnds;
     const float reach = std::ceil(edges_.ink.reach()) + 1.0F;
     const float left = static_cast<float>(tile.x0) - reach;
     const float right = static_cast<float>(tile.x1) + reach;
     const float top = static_cast<float>(tile.y0) - reach;
     const float bottom = static_cast<float>(tile.y1) + reach;
+    const std::array<float, 4> first{left, top, left, top};
+    const std::array<float, 4> last{right, bottom, right, bottom};
+    const auto lower = hn::LoadU(kEnds, first.data());
+    const auto upper = hn::LoadU(kEnds, last.data());
+    std::size_t most = 0;
+    for_each_near_tile(tile, found, [&](const TileLines& lines) { most += lines.strokes.size(); });
+    near_.resize(most);
+    middles_.resize(most + 1);  // each is written with what the next will overwrite
+    std::size_t count = 0;
     for_each_near_tile(tile, found, [&](const TileLines& lines) {
         for (const InkStroke& s : lines.strokes) {
-            const bool near = std::max(s.a.x, s.b.x) > left && std::min(s.a.x, s.b.x) < right &&
-                              std::max(s.a.y, s.b.y) > top && std::min(s.a.y, s.b.y) < bottom;
-            if (!near) continue;
-            near_.push_back(&s);
-            middles_.push_back((s.a + s.b) * 0.5F);
+            std::array<float, 4> ends;
+            static_assert(offsetof(InkStroke, b) == sizeof(Vec2f));
+            std::memcpy(ends.data(), &s, sizeof(ends));
+            const auto from_a = hn::LoadU(kEnds, ends.data());
+            const auto from_b = hn::Shuffle1032(from_a);
+            const auto near = hn::And(hn::Gt(hn::Max(from_a, from_b), lower),
+                                      hn::Lt(hn::Min(from_a, from_b), upper));
+            const auto middle = hn::Mul(hn::Add(from_a, from_b), hn::Set(kEnds, 0.5F));
+            hn::StoreU(middle, kEnds, &middles_[count].x);
+            near_[count] = &s;
+            count += hn::AllTrue(kEnds, near) ? 1 : 0;
         }
     });
-    scales_.resize(near_.size());
+    near_.resize(count);
+    middles_.resize(count);
+    scales_.resize(count);
 }
 
 void LineDrawer::write(const Tile& tile) {

@@ -226,8 +226,9 @@ PixelColor LineFinder::pixel_color(int x, int y) const {
 /// Keeps what is needed to finish the pixels to which lines of other tiles may add.
 void LineFinder::keep_fringe(const Tile& tile) {
     Fringe& fringe = found_.fringe;
-    smoothing_.take_fringe(fringe);
+    smoothing_.copy_fringe(fringe);
     if (!saw_anything_) return;
+    fringe.colors.reserve(static_cast<std::size_t>(tile.x1 - tile.x0 + tile.y1 - tile.y0 - 1));
     for (int x = tile.x0; x < tile.x1; ++x) fringe.colors.push_back(pixel_color(x, tile.y0));
     for (int y = tile.y0 + 1; y < tile.y1; ++y) fringe.colors.push_back(pixel_color(tile.x0, y));
 }
