@@ -263,6 +263,57 @@ Object hills() {
     return object;
 }
 
+/// A plate in two halves, the crack between them so many pixels wide. Along one half a wall goes
+/// down, which shows in the crack.
+Object cracked_plate(double angle_deg, double shift, double width) {
+    const double a = angle_deg * kDegrees;
+    const Vec3d along{std::cos(a), std::sin(a), 0.0};
+    const Vec3d left{-along.y, along.x, 0.0};
+    const auto corner = [&](double s, double t, double z) {
+        return to_float(along * s + left * (t + shift) + Vec3d{0, 0, z});
+    };
+    constexpr double kFar = 200.0;
+    Object plate = mesh_object(
+        {corner(-kFar, 0, 0), corner(kFar, 0, 0), corner(kFar, kFar, 0), corner(-kFar, kFar, 0),
+         corner(-kFar, -2 * width, -9), corner(kFar, -2 * width, -9), corner(-kFar, -width, 0),
+         corner(kFar, -width, 0), corner(-kFar, -kFar, 0), corner(kFar, -kFar, 0)},
+        {{0, 1, 2}, {0, 2, 3}, {4, 5, 1}, {4, 1, 0}, {8, 9, 7}, {8, 7, 6}});
+    auto& mesh = std::get<Mesh>(plate.shape);
+    weld(mesh);
+    smooth_normals(mesh);
+    return plate;
+}
+
+/// Lattice points see into it here and there: dots in a row.
+TEST(CrackInAMesh, ThatIsNarrowerThanAQuarterOfAPixelIsNotSeenAtAnyAngle) {
+    const Size size{96, 96};
+    for (const double width : {0.03, 0.1, 0.2}) {
+        for (int angle_deg = 0; angle_deg < 180; angle_deg += 11) {
+            Settings settings = plan_view(size);
+            const Scene scene({cracked_plate(angle_deg, 0.137 + 0.01 * angle_deg, width)});
+            for (const auto& [type, length] : lengths(scene, settings)) {
+                EXPECT_LT(length, 1e-3)
+                    << static_cast<int>(type) << ", " << width << ", " << angle_deg;
+            }
+            set(settings, "compose", "shaded");
+            const Film film = draw(scene, settings, {.display = false, .linear = true});
+            const auto& light = plane(film, "R");
+            const auto [least, most] = std::ranges::minmax(light);
+            EXPECT_LT(most - least, 1e-3F * most) << width << ", " << angle_deg;
+        }
+    }
+}
+
+TEST(CrackInAMesh, ThatIsWiderThanAPixelHasALineAlongIt) {
+    const Settings settings = plan_view({96, 96});
+    for (const double angle_deg : {0.0, 22.0, 57.0}) {
+        const Scene scene({cracked_plate(angle_deg, 0.237, 1.2)});
+        double total = 0.0;
+        for (const auto& [type, length] : lengths(scene, settings)) total += length;
+        EXPECT_GT(total, 180.0) << angle_deg;
+    }
+}
+
 TEST(MendedLines, DoNotDependOnTilesOrThreads) {
     const Scene scene({hills()});
     Settings settings = plan_view({240, 160}, 2.0);

@@ -350,6 +350,29 @@ TEST(Slit, NarrowerThanAQuarterOfTheLatticesSpacingHasNoLine) {
     }
 }
 
+/// A narrow ledge between two walls that are seen at a flat angle and all but parallel: the one
+/// behind the other leaves its plane by little, and is far from it.
+TEST(Slit, IsNoneBetweenWallsBehindEachOtherAtAFlatAngle) {
+    const auto wall = [](double through, double z, double facing_deg, double turned_deg) {
+        const double a = facing_deg * kDegrees;
+        const double b = turned_deg * kDegrees;
+        return plane(1, {through, 24, z},
+                     {std::cos(a) * std::cos(b), std::cos(a) * std::sin(b), std::sin(a)});
+    };
+    const Surface front = wall(23.8, 0, 1.2, 0);
+    const Surface ledge = plane(1, {24, 24, -8}, {0, 0, 1});
+    const Surface back = wall(24.02, -8, 0.9, 2.5);
+    const Surface floor = plane(1, {24, 24, -13}, {0, 0, 1});
+    const Surface step{
+        1, [=](double x, double y) -> std::optional<Hit> {
+            if (x < 22.7) return std::nullopt;
+            return (x < 23.8 ? front : x < 24.02 ? ledge : x < 24.1 ? back : floor).at(x, y);
+        }};
+    Found found = search({{step}}, 1);
+    std::erase_if(found.segments, [](const Segment& s) { return s.a.x < 23.0F; });
+    EXPECT_GT(total_length(found), 40.0);
+}
+
 /// What meets in the depth of such a crack, next to a lattice point that looks into it, is not
 /// drawn either: it would be a dot.
 TEST(Slit, HasNoDotWhereTwoWallsMeetInIt) {

@@ -120,8 +120,9 @@ class Seen {
         return walk_.cross(a, first, b, second, {1.0F / 64.0F, 0.25F}, expected_);
     }
     /// Whether the ray that a crossing asks for sees what it should.
-    bool confirmed(const MeshCrossing& crossing, Vec2f a, Vec2f b) const {
-        const SurfaceKey seen = at(a + (b - a) * crossing.checked_at).key;
+    bool confirmed(const MeshCrossing& crossing) const {
+        if (!crossing.needs_check) return true;
+        const SurfaceKey seen = at(crossing.checked).key;
         const auto first = expected_.begin() + crossing.first_expected;
         return (crossing.unless_object != SurfaceKey::kNothing &&
                 seen.object != crossing.unless_object) ||
@@ -182,7 +183,7 @@ TEST(MeshWalk, FindsTheOutlineOfARoundMeshWhereRaysBeginToMiss) {
             ASSERT_EQ(crossing.kind, hit_a ? Kind::first_limb : Kind::second_limb);
             EXPECT_FALSE(crossing.at_rim);
             EXPECT_TRUE(std::isinf(crossing.gap));
-            EXPECT_TRUE(seen.confirmed(crossing, a, b));
+            EXPECT_TRUE(seen.confirmed(crossing));
             float low = 0.0F;
             float high = 1.0F;
             for (int step = 0; step < 14; ++step) {
@@ -226,7 +227,7 @@ TEST(MeshWalk, FindsWhereTwoBoxesPassThroughEachOther) {
     int seams = 0;
     seen.for_each_pair([&](Vec2f a, Sight at_a, Vec2f b, Sight at_b) {
         const MeshCrossing crossing = seen.cross(a, at_a.key, b, at_b.key);
-        if (crossing.kind != Kind::seam || !seen.confirmed(crossing, a, b)) return;
+        if (crossing.kind != Kind::seam || !seen.confirmed(crossing)) return;
         ++seams;
         const Vec3d p = seen.world(a + (b - a) * static_cast<float>(crossing.at), crossing.t);
         const auto off = [](double x, double low, double high) {
@@ -289,7 +290,7 @@ Tally tally(const Seen& seen) {
         const MeshCrossing crossing = seen.cross(a, at_a.key, b, at_b.key);
         tally.unknown += crossing.kind == Kind::unknown;
         constexpr float kDeep = 0.05F;
-        if (!is_limb(crossing) || crossing.gap < kDeep || !seen.confirmed(crossing, a, b)) return;
+        if (!is_limb(crossing) || crossing.gap < kDeep || !seen.confirmed(crossing)) return;
         constexpr float kBeside = 0.004F;
         const auto at = static_cast<float>(crossing.at);
         if (at < kBeside || at > 1.0F - kBeside) return;

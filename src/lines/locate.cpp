@@ -12,12 +12,6 @@ namespace ink {
 
 namespace {
 
-/// The same in lengths of their distance: the sine of the angle between that and the surface.
-float jump_sine(const Sample& a, const Sample& b) {
-    const float distance = length(b.position - a.position);
-    return distance > 0.0F ? depth_jump(a, b) / distance : 0.0F;
-}
-
 /// Which of two neighbouring intervals to keep: the one where this is larger. A sharp corner
 /// halfway between two hits shows no jump, so the turn counts as well, as if over half of `scale`.
 float discontinuity(const Sample& a, const Sample& b, float scale) {
@@ -38,6 +32,10 @@ bool same_surface(const Sample& a, const Sample& b) { return a.id == b.id && a.b
 float crease_strength(const LocateSettings& settings, float angle) {
     return smoothstep(settings.crease_min_deg * kRadiansPerDegree,
                       settings.crease_full_deg * kRadiansPerDegree, angle);
+}
+
+float least_turn(const LocateSettings& settings) {
+    return 2.0F * std::sin(0.5F * settings.crease_min_deg * kRadiansPerDegree);
 }
 
 /// What a prediction says needs no measuring: a limb hides, a seam joins.
@@ -71,7 +69,7 @@ Locator::Locator(const Viewpoint& viewpoint, const LocateSettings& settings, Way
     : viewpoint_(viewpoint),
       settings_(settings),
       way_out_(std::move(way_out)),
-      least_turn_(2.0F * std::sin(0.5F * settings.crease_min_deg * kRadiansPerDegree)) {
+      least_turn_(least_turn(settings)) {
     jump_shares_.push_back(1.0F);
     for (int step = 0; step < settings.steps + settings.steep_steps; ++step) {
         jump_shares_.push_back(jump_shares_.back() *
@@ -91,6 +89,7 @@ void Locator::locate(const SampleGrid& grid, std::span<const SuspectEdge> edges,
 void Locator::locate_some(const SampleGrid& grid, std::span<const SuspectEdge> edges,
                           std::span<const std::uint32_t> some, const SurfaceFunction& describe,
                           const SampleFunction& sample, std::vector<Crossing>& crossings) {
+    slits_.clear();
     start(grid, edges, some, describe);
     for (;;) {
         active_.clear();
@@ -295,7 +294,7 @@ void Locator::drop_specks(const SampleFunction& sample) {
     sample(points_, samples_);
     for (std::size_t n = 0; n < active_.size(); ++n) {
         Interval& interval = intervals_[active_[n]];
-        if (is_speck(interval, samples_[n])) interval.state = State::smooth;
+        if (is_speck(interval, samples_[n])) drop_slit(interval, interval.b_moved);
     }
 }
 
@@ -343,7 +342,8 @@ void Locator::drop_slits(float spacing, const SampleFunction& sample) {
         const bool second = active_[n] % 2 != 0;
         const Sample& before = second ? interval.at_a : interval.at_b;
         const Sample& within = second ? interval.at_b : interval.at_a;
-        if (is_slit(before, within, samples_[n])) interval.state = State::smooth;
+        if (is_slit(viewpoint_, before, within, samples_[n], least_turn_))
+            drop_slit(interval, !second);
         const bool both = n > 0 && active_[n - 1] / 2 == active_[n] / 2;
         if (both && lies_in_slit(interval, samples_[n - 1], samples_[n])) {
             interval.state = State::smooth;
@@ -351,18 +351,10 @@ void Locator::drop_slits(float spacing, const SampleFunction& sample) {
     }
 }
 
-namespace {
-
-bool one_surface(const Sample& a, const Sample& b, float least_turn) {
-    constexpr float kOneSurface = 0.2F;
-    return a.id == b.id && turn(a, b) <= least_turn && jump_sine(a, b) < kOneSurface;
-}
-
-}  // namespace
-
-/// Whether the surface before the slit goes on beyond it, and is not what is seen within.
-bool Locator::is_slit(const Sample& before, const Sample& within, const Sample& beyond) const {
-    return one_surface(before, beyond, least_turn_) && !one_surface(within, beyond, least_turn_);
+void Locator::drop_slit(Interval& interval, bool first_within) {
+    interval.state = State::smooth;
+    // Of an interval that was split, the other end is not the lattice's.
+    if (first_within && interval.may_split) slits_.push_back(interval.edge);
 }
 
 /// Whether a crossing lies in a slit: the same surface on both sides of it, of which neither of its
@@ -370,10 +362,10 @@ bool Locator::is_slit(const Sample& before, const Sample& within, const Sample& 
 bool Locator::lies_in_slit(const Interval& interval, const Sample& beyond,
                            const Sample& on_other_side) const {
     const auto apart = [&](const Sample& side) {
-        return !one_surface(side, beyond, least_turn_) &&
-               !one_surface(side, on_other_side, least_turn_);
+        return !one_surface(viewpoint_, side, beyond, least_turn_) &&
+               !one_surface(viewpoint_, side, on_other_side, least_turn_);
     };
-    return one_surface(beyond, on_other_side, least_turn_) && apart(interval.at_a) &&
+    return one_surface(viewpoint_, beyond, on_other_side, least_turn_) && apart(interval.at_a) &&
            apart(interval.at_b);
 }
 

@@ -71,6 +71,8 @@ inline constexpr float kPositionRounding = 4e-6F;
 
 /// Of a crease at which the surface turns by an angle, radians.
 float crease_strength(const LocateSettings& settings, float angle);
+/// Of a crease, as the chord on the unit sphere.
+float least_turn(const LocateSettings& settings);
 
 /// One side of a predicted crossing.
 struct PredictedSide {
@@ -118,6 +120,10 @@ class Locator {
                      std::span<const std::uint32_t> some, const SurfaceFunction& describe,
                      const SampleFunction& sample, std::vector<Crossing>& crossings);
 
+    /// Suspect edges of the last call whose first end looks into a slit, and their second beside
+    /// it.
+    std::span<const std::uint32_t> slits() const { return slits_; }
+
   private:
     enum class State : std::uint8_t {
         open,
@@ -156,7 +162,7 @@ class Locator {
     bool is_speck(const Interval& interval, const Sample& beyond) const;
     bool touch(const Interval& interval) const;
     void drop_slits(float spacing, const SampleFunction& sample);
-    bool is_slit(const Sample& before, const Sample& within, const Sample& beyond) const;
+    void drop_slit(Interval& interval, bool first_within);
     bool lies_in_slit(const Interval& interval, const Sample& beyond,
                       const Sample& on_other_side) const;
     void refine_steep(const SampleFunction& sample);
@@ -189,6 +195,7 @@ class Locator {
     std::vector<float> jump_shares_;  ///< that must be left after so many steps
     std::vector<Interval> intervals_;
     std::vector<std::uint32_t> all_, order_, bins_;
+    std::vector<std::uint32_t> slits_;
     std::vector<std::size_t> active_;
     std::vector<Vec2f> points_;
     std::vector<Sample> samples_;

@@ -3,18 +3,24 @@
 #include <algorithm>
 #include <cmath>
 
+#include "lines/sample_pairs.h"
+
 namespace ink {
 
 void MeshLocator::locate(const SampleGrid& grid, std::span<const SuspectEdge> suspects,
                          std::span<const MeshEdge> edges, const IdentifyFunction& identify,
-                         std::vector<Crossing>& crossings, std::vector<std::uint32_t>& left) {
+                         const SampleFunction& sample, std::vector<Crossing>& crossings,
+                         std::vector<std::uint32_t>& left) {
     constexpr int kMostFolds = 4;
+    doubted_.clear();
+    slits_.clear();
     start(grid, suspects, edges);
     for (int fold = 0; fold < kMostFolds && !open_.empty(); ++fold) {
         look(grid.spacing, crossings, left);
         check(identify, crossings, left);
     }
     for (const Search& search : open_) left.push_back(search.crossing.edge);
+    if (!doubted_.empty()) drop_slits(grid, sample, left);
 }
 
 void MeshLocator::start(const SampleGrid& grid, std::span<const SuspectEdge> suspects,
@@ -32,6 +38,8 @@ void MeshLocator::start(const SampleGrid& grid, std::span<const SuspectEdge> sus
         const std::size_t a = grid.index(suspect.i, suspect.j);
         const std::size_t b = grid.index(i, j);
         search.crossing.edge = edge.edge;
+        search.at_first = a;
+        search.at_second = b;
         search.crossing.first = grid.id[a];
         search.crossing.second = grid.id[b];
         search.crossing.first_in_front = grid.t[a] <= grid.t[b];
@@ -55,12 +63,12 @@ void MeshLocator::look(float spacing, std::vector<Crossing>& crossings,
             case Verdict::nothing: break;
             case Verdict::unsettled: left.push_back(search.crossing.edge); break;
             case Verdict::line:
-                if (search.crossing.type == LineType::crease) {
+                if (!search.mesh.needs_check) {
                     crossings.push_back(search.crossing);
                     break;
                 }
                 checked_.push_back(search);
-                points_.push_back(search.a + way * search.mesh.checked_at);
+                points_.push_back(search.mesh.checked);
         }
     }
     open_.clear();
@@ -76,8 +84,31 @@ void MeshLocator::check(const IdentifyFunction& identify, std::vector<Crossing>&
             crossings.push_back(search.crossing);
         } else if (goes_on(search, points_[n], seen_[n])) {
             open_.push_back(search);
+        } else if (search.mesh.in_slit != MeshCrossing::InSlit::none) {
+            doubted_.push_back(search);
         } else {
             left.push_back(search.crossing.edge);
+        }
+    }
+}
+
+/// Where the surface on the far side of the line goes on past the near end, that end looked into a
+/// slit.
+void MeshLocator::drop_slits(const SampleGrid& grid, const SampleFunction& sample,
+                             std::vector<std::uint32_t>& left) {
+    points_.clear();
+    for (const Search& search : doubted_) points_.push_back(search.mesh.checked);
+    samples_.resize(points_.size());
+    sample(points_, samples_);
+    for (std::size_t n = 0; n < doubted_.size(); ++n) {
+        const Search& search = doubted_[n];
+        const bool first = search.mesh.in_slit == MeshCrossing::InSlit::first;
+        const Sample before = grid.sample(first ? search.at_second : search.at_first);
+        const Sample within = grid.sample(first ? search.at_first : search.at_second);
+        if (!is_slit(viewpoint_, before, within, samples_[n], least_turn(settings_))) {
+            left.push_back(search.crossing.edge);
+        } else if (first) {
+            slits_.push_back(search.crossing.edge);
         }
     }
 }

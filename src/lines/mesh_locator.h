@@ -23,25 +23,35 @@ struct MeshEdge {
 /// The geometry that a surface belongs to.
 using GeometryFunction = std::function<GeometryId(SurfaceKey)>;
 
-/// Locates what Locator would between meshes whose edges know their triangles, without samples of
-/// its own: the crossing follows from the mesh, and one ray beside it is asked what it hits. If
-/// that is another fold of the surface that ends, the search goes on from there. What that does not
-/// settle is left to Locator.
+/// Locates what Locator would between meshes whose edges know their triangles, without bisection:
+/// the crossing follows from the mesh, and one ray beside it is asked what it hits. If that is
+/// another fold of the surface that ends, the search goes on from there; if it tells that an end
+/// looked into a slit, there is no line. What that does not settle is left to Locator.
 class MeshLocator {
   public:
-    MeshLocator(const LocateSettings& settings, MeshCrossingFunction cross, GeometryFunction id_of)
-        : settings_(settings), cross_(std::move(cross)), id_of_(std::move(id_of)) {}
+    MeshLocator(const Viewpoint& viewpoint, const LocateSettings& settings,
+                MeshCrossingFunction cross, GeometryFunction id_of)
+        : viewpoint_(viewpoint),
+          settings_(settings),
+          cross_(std::move(cross)),
+          id_of_(std::move(id_of)) {}
 
     /// Adds crossings, and to `left` the suspect edges that are left.
     void locate(const SampleGrid& grid, std::span<const SuspectEdge> suspects,
                 std::span<const MeshEdge> edges, const IdentifyFunction& identify,
-                std::vector<Crossing>& crossings, std::vector<std::uint32_t>& left);
+                const SampleFunction& sample, std::vector<Crossing>& crossings,
+                std::vector<std::uint32_t>& left);
+
+    /// Suspect edges of the last call whose first end looks into a slit, and their second beside
+    /// it.
+    std::span<const std::uint32_t> slits() const { return slits_; }
 
   private:
     /// The part of a lattice edge that is looked at, and what was found there.
     struct Search {
         Vec2f a, b;
-        SurfaceKey first, second;  ///< seen there
+        SurfaceKey first, second;         ///< seen there
+        std::size_t at_first, at_second;  ///< points of the grid
         MeshCrossing mesh{};
         Crossing crossing{};
     };
@@ -52,18 +62,24 @@ class MeshLocator {
     void look(float spacing, std::vector<Crossing>& crossings, std::vector<std::uint32_t>& left);
     void check(const IdentifyFunction& identify, std::vector<Crossing>& crossings,
                std::vector<std::uint32_t>& left);
+    void drop_slits(const SampleGrid& grid, const SampleFunction& sample,
+                    std::vector<std::uint32_t>& left);
     Verdict classify(float spacing, Search& search) const;
     Verdict classify_limb(float spacing, Search& search) const;
     bool is_confirmed(const MeshCrossing& mesh, SurfaceKey seen) const;
     bool goes_on(Search& search, Vec2f checked, SurfaceKey seen) const;
 
+    Viewpoint viewpoint_;
     LocateSettings settings_;
     MeshCrossingFunction cross_;
     GeometryFunction id_of_;
     std::vector<Search> open_;
     std::vector<Search> checked_;  ///< those that a ray must confirm
+    std::vector<Search> doubted_;  ///< those one end of which may look into a slit
+    std::vector<std::uint32_t> slits_;
     std::vector<Vec2f> points_;
     std::vector<SurfaceKey> expected_, seen_;
+    std::vector<Sample> samples_;
 };
 
 }  // namespace ink

@@ -265,6 +265,7 @@ void LineFinder::find_lines() {
     {
         const Timer phase(stats_.locate_ms);
         locate();
+        if (front_) close_slits();
         if (crosses_faces()) cross_faces();
     }
     {
@@ -405,8 +406,30 @@ void LineFinder::locate() {
         others_.push_back(k);
     }
     ball_locator_.locate(grid_, suspects_, ball_edges_, identify_, crossings_, others_);
-    mesh_locator_.locate(grid_, suspects_, mesh_edges_, identify_, crossings_, others_);
+    mesh_locator_.locate(grid_, suspects_, mesh_edges_, identify_, sample_, crossings_, others_);
     locator_.locate_some(grid_, suspects_, others_, describe_, sample_, crossings_);
+}
+
+/// What a lattice point sees through a slit too narrow for a line would be a speck in the picture:
+/// it takes the colour of what is beside it. Only by edges that begin in it, which belong to its
+/// own tile.
+void LineFinder::close_slits() {
+    for (const auto slits : {mesh_locator_.slits(), locator_.slits()}) {
+        for (const std::uint32_t k : slits) {
+            const SuspectEdge& edge = suspects_[k];
+            const auto [r, g, b, a] =
+                color_at(edge.i + (edge.down ? 0 : 1), edge.j + (edge.down ? 1 : 0));
+            const std::uint32_t block = block_index(edge.i / kBlockSide, edge.j / kBlockSide);
+            if (block == kEmptyBlock) continue;
+            const int lane = edge.j % kBlockSide * kBlockSide + edge.i % kBlockSide;
+            ColorPacket& colors = colors_[block];
+            colors.r[lane] = r;
+            colors.g[lane] = g;
+            colors.b[lane] = b;
+            colors.a[lane] = a;
+            seen_[block] = 1;
+        }
+    }
 }
 
 /// Whether a point of the grid saw a ball or the background, and which.

@@ -87,7 +87,7 @@ class LineFinder {
           }),
           ball_locator_(edges.viewpoint, edges.locate),
           mesh_locator_(
-              edges.locate,
+              edges.viewpoint, edges.locate,
               [&edges](Vec2f from, SurfaceKey first, Vec2f to, SurfaceKey second,
                        const MeshChecks& checks, std::vector<SurfaceKey>& expected) {
                   return edges.mesh_walk.cross(from, first, to, second, checks, expected);
@@ -145,6 +145,7 @@ class LineFinder {
     bool is_smooth(const SuspectEdge& edge) const;
     void describe(std::size_t point, Sample& sample) const;
     void locate();
+    void close_slits();
     bool see_ball(int i, int j, BallHit& hit) const;
     bool see_mesh(int i, int j, SurfaceKey& key) const;
     void identify(std::span<const Vec2f> points, std::span<SurfaceKey> out);

@@ -30,19 +30,25 @@ struct MeshCrossing {
     float footprint = 0.0F;  ///< a pixel at that depth; both in scene units
     float turn = 0.0F;       ///< of a crease: of the normal, as the chord on the unit sphere
 
-    /// Limbs and seams: that no third surface is in front is for the caller to find out, by a ray
-    /// at this place of the way, which may lie beyond its end. It must hit one of these.
-    float checked_at = 0.0F;
+    /// Of limbs and seams the caller must find out that no third surface is in front; where an end
+    /// of the way is near the line, that it does not look into a slit: by a ray through this point.
+    bool needs_check = false;
+    Vec2f checked;
+    float checked_at = -1.0F;  ///< the same along the way, if it lies on it
+    /// Which end is so near to the line that it may look into a slit.
+    enum class InSlit : std::uint8_t { none, first, second } in_slit = InSlit::none;
+    /// It must hit one of these.
     std::uint32_t first_expected = 0, expected = 0;  ///< which, in the list that was given
-    /// Beyond the end, another object than this one is as good; kNothing: none is.
+    /// Past an end, another object than this one is as good; kNothing: none is.
     std::uint32_t unless_object = SurfaceKey::kNothing;
 };
 
 /// Where the check goes, in lengths of the way.
 struct MeshChecks {
     float offset;  ///< beside a limb
-    /// Where an open edge, or a limb near the end of the way, may be one side of a slit that is
-    /// narrower than this, beyond it.
+    /// An end of the way that is nearer to a limb or crease than this may look into a slit between
+    /// this line and another one: the check goes so far from the line, past that end, at a right
+    /// angle. So far beyond it goes at an open edge, too, which may be one side of a slit.
     float slit;
 };
 

@@ -43,6 +43,9 @@ struct Foot {
     bool above() const { return side >= 0.0; }
 };
 
+/// The two ends of an edge.
+using Feet = std::array<Foot, 2>;
+
 Foot foot_of(const Line& line, Vec3f vertex) {
     const Vec3d p = to_double(vertex) - line.start;
     return {dot(line.side, p) + line.side_at_start, dot(line.along, p), dot(line.forward, p)};
@@ -89,6 +92,7 @@ struct Way {
     /// The sharpest crease on the way.
     double crease_at = 0.0, crease_nearness = 0.0;
     float crease_turn = 0.0F;
+    Feet crease{}, last{};  ///< that crease, and the edge at which the way ends
 
     bool ends() const { return end == End::turned || end == End::rim; }
     double from_start(double along_line) const { return backwards ? 1.0 - along_line : along_line; }
@@ -116,6 +120,9 @@ struct Way {
 /// there, too.
 constexpr double kRounding = 1e-7;
 constexpr double kRayRounding = 1e-3;
+
+/// What turns by less, as a chord on the unit sphere, is one side of a slit: about 10 degrees.
+constexpr float kOneSurface = 0.17F;
 
 /// Walks over one surface along one line.
 class Walker {
@@ -152,7 +159,7 @@ class Walker {
     /// How the way leaves a triangle: by an edge, from its first corner to its second.
     struct Hop {
         std::uint32_t edge = 0;
-        std::array<Foot, 2> feet{};
+        Feet feet{};
         Passage passage{};
     };
 
@@ -167,6 +174,7 @@ class Walker {
     static void finish(Way::End end, const Hop& hop, double at, Way& way) {
         way.steps[way.count++] = {at, hop.passage.nearness, 0};
         way.end = end;
+        way.last = hop.feet;
     }
 
     /// Of the two edges of the first triangle that the line crosses, the way leaves by the later.
@@ -215,6 +223,7 @@ class Walker {
         way.crease_turn = turn;
         way.crease_at = hop.passage.at;
         way.crease_nearness = hop.passage.nearness;
+        way.crease = hop.feet;
     }
 
     /// How far the normal turns at a place of an edge, as the chord on the unit sphere.
@@ -257,6 +266,8 @@ class Crosser {
         : projection_(projection),
           surfaces_(surfaces),
           line_(line_between(projection, from, to)),
+          from_point_(from),
+          to_point_(to),
           from_(to_double(from - projection.centre)),
           step_(to_double(to - from)),
           checks_(checks),
@@ -290,13 +301,16 @@ class Crosser {
         Walker(line_, surfaces_[from.object]).walk(from.primitive, target, 1.0 + kSlack, way);
     }
 
-    MeshCrossing along_surface(const Way& way) const {
+    MeshCrossing along_surface(const Way& way) {
         MeshCrossing crossing;
         crossing.kind = MeshCrossing::Kind::smooth;
         if (way.crease_turn > 0.0F) {
             crossing.kind = MeshCrossing::Kind::crease;
             crossing.turn = way.crease_turn;
             place(way.from_start(way.crease_at), way.crease_nearness, crossing);
+            // What an end sees in a slit does not go on to where the check goes.
+            const bool second = crossing.at > 0.5;
+            check_past(second, way.crease, second ? second_ : first_, crossing);
         }
         return crossing;
     }
@@ -351,42 +365,89 @@ class Crosser {
         crossing.kind = MeshCrossing::Kind::seam;
         const double at = low + share * (high - low);
         place(at, nearness(way_a_, at), crossing);
-        crossing.checked_at = static_cast<float>(at);
-        crossing.first_expected = static_cast<std::uint32_t>(expected_.size());
+        begin_check(at, crossing);
         expect(first_.object, way_a_, at);
         expect(second_.object, way_b_, 1.0 - at);
-        crossing.expected = static_cast<std::uint32_t>(expected_.size()) - crossing.first_expected;
+        end_check(crossing);
         return crossing;
     }
 
     /// Beside a limb, what is behind it should be seen.
     void add_check(const Way& way, bool first, const Way* behind, MeshCrossing& crossing) {
-        const SurfaceKey front = first ? first_ : second_;
         const SurfaceKey far = first ? second_ : first_;
-        const double left = 1.0 - way.end_at();
-        const bool slit = crossing.at_rim || left < checks_.slit;
-        const double at = way.end_at() + (slit ? checks_.slit : checks_.offset);
-        crossing.checked_at = static_cast<float>(way.from_start(at));
-        crossing.first_expected = static_cast<std::uint32_t>(expected_.size());
-        if (at > 1.0) crossing.unless_object = front.object;
+        if (check_past(first, way.last, far, crossing)) {
+            crossing.unless_object = (first ? first_ : second_).object;
+            return;
+        }
+        const double at = way.end_at() + (crossing.at_rim ? checks_.slit : checks_.offset);
+        begin_check(way.from_start(at), crossing);
         if (behind == nullptr) {
             expected_.push_back({});
-        } else if (at <= 1.0) {
-            expect(far.object, *behind, 1.0 - at);
         } else {
-            Way on;
-            on.backwards = way.backwards;
-            Walker(line_, surfaces_[far.object])
-                .walk(far.primitive, kNoTarget, at + kRayRounding, on);
-            expect(far.object, on, at);
+            expect(far.object, *behind, 1.0 - at);
         }
+        end_check(crossing);
+    }
+
+    /// Where an end of the way is so near to a line along `edge` that it may look into a slit: past
+    /// that end, the surface that it sees must go on, without a crease. False where it is not.
+    bool check_past(bool second, const Feet& edge, SurfaceKey end, MeshCrossing& crossing) {
+        const Vec2d way = second ? step_ : step_ * -1.0;
+        const Vec2d away = normal_of(edge, way);
+        const double size = length(step_);
+        const double left = second ? 1.0 - crossing.at : crossing.at;
+        if (left * dot(away, way) >= checks_.slit * size) return false;
+
+        const Vec2f from = second ? to_point_ : from_point_;
+        const Vec2d past = way * -left + away * (checks_.slit * size);  // from that end on
+        crossing.needs_check = true;
+        crossing.in_slit = second ? MeshCrossing::InSlit::second : MeshCrossing::InSlit::first;
+        crossing.checked = from + Vec2f{static_cast<float>(past.x), static_cast<float>(past.y)};
+        crossing.first_expected = static_cast<std::uint32_t>(expected_.size());
+        if (end.object == SurfaceKey::kNothing) {
+            expected_.push_back({});
+        } else {
+            const double slack = kRayRounding * size / std::max(length(past), 1e-3 * size);
+            Way on;
+            Walker(line_between(projection_, from, crossing.checked), surfaces_[end.object])
+                .walk(end.primitive, kNoTarget, 1.0 + slack, on);
+            if (on.crease_turn < kOneSurface) expect(end.object, on, 1.0, slack);
+        }
+        end_check(crossing);
+        return true;
+    }
+
+    /// Of an edge on the screen, a unit vector, to the side to which `way` leads.
+    Vec2d normal_of(const Feet& edge, Vec2d way) const {
+        const auto place = [&](const Foot& foot) {
+            const double pixel = line_.pixel_at_start + line_.pixel_a_depth * foot.depth;
+            return Vec2d{foot.along / pixel, foot.side / pixel / dot(step_, step_)};
+        };
+        const Vec2d p = place(edge[0]);
+        const Vec2d q = place(edge[1]);
+        const Vec2d along = step_ * (q.x - p.x) + Vec2d{-step_.y, step_.x} * (q.y - p.y);
+        const double size = length(along);
+        // A corner behind the eye is nowhere on the screen.
+        const bool known = size > 0.0 && std::isfinite(size);
+        const Vec2d normal =
+            known ? Vec2d{-along.y, along.x} * (1.0 / size) : way * (1.0 / length(way));
+        return dot(normal, way) < 0.0 ? normal * -1.0 : normal;
+    }
+
+    void begin_check(double at, MeshCrossing& crossing) const {
+        crossing.needs_check = true;
+        crossing.checked_at = static_cast<float>(at);
+        crossing.checked = from_point_ + (to_point_ - from_point_) * crossing.checked_at;
+        crossing.first_expected = static_cast<std::uint32_t>(expected_.size());
+    }
+    void end_check(MeshCrossing& crossing) const {
         crossing.expected = static_cast<std::uint32_t>(expected_.size()) - crossing.first_expected;
     }
 
     /// The triangles that a ray at this place of a way may hit.
-    void expect(std::uint32_t object, const Way& way, double at) {
+    void expect(std::uint32_t object, const Way& way, double at, double slack = kRayRounding) {
         for (std::size_t k = 0; k + 1 < way.count; ++k) {
-            if (way.steps[k].at - kRayRounding <= at && at <= way.steps[k + 1].at + kRayRounding) {
+            if (way.steps[k].at - slack <= at && at <= way.steps[k + 1].at + slack) {
                 expected_.push_back({object, way.steps[k].triangle});
             }
         }
@@ -416,6 +477,7 @@ class Crosser {
     const Projection& projection_;
     const std::vector<MeshWalk::Surface>& surfaces_;
     Line line_;
+    Vec2f from_point_, to_point_;
     Vec2d from_, step_;
     MeshChecks checks_;
     std::vector<SurfaceKey>& expected_;
