@@ -33,6 +33,11 @@ double quantile(std::vector<double> values, double share) {
     return values[static_cast<std::size_t>(std::ceil(share * last))];
 }
 
+std::array<double, 4> quantiles(const std::vector<double>& values) {
+    return {quantile(values, 0.5), quantile(values, 0.95), quantile(values, 0.99),
+            quantile(values, 1.0)};
+}
+
 /// What is done to a session by hand.
 class Driver : public inktrace::viewer::WaitingOwner {
   public:
@@ -77,12 +82,7 @@ class Turning {
         }
     }
 
-    /// From events to pictures, in the time from one picture to the next.
-    double latency(double part) const {
-        return quantile(latency_ms, part) / quantile(interval_ms, 0.5);
-    }
-
-    std::vector<double> plain_ms, frame_ms, latency_ms, interval_ms;
+    std::vector<double> plain_ms, frame_ms, latency_ms, latency_frames;
     double share = 1.0;
     std::uint64_t most_pictures = 0;  ///< after an event, up to the first that shows it
 
@@ -96,7 +96,6 @@ class Turning {
     void turn(int frames) {
         constexpr auto kBetweenEvents = std::chrono::milliseconds(8);
         std::deque<Event> events;
-        last_shown_ = {};
         std::uint64_t seen = driver_.session.picture_number();
         for (int shown = 0; shown < frames;) {
             driver_.turn(0.7, 0.2);
@@ -121,12 +120,14 @@ class Turning {
             std::ranges::find_if(events, [&](const Event& event) { return event.eye == eye; });
         if (shown == events.end()) return;
         frame_ms.push_back(painting.frame_ms);
-        if (last_shown_ != Clock::time_point{}) interval_ms.push_back(ms_since(last_shown_));
-        last_shown_ = Clock::now();
         share = painting.scale;
+        const double before = last_ms_;
+        last_ms_ = painting.frame_ms;
         for (auto event = events.begin(); event <= shown; ++event) {
             latency_ms.push_back(ms_since(event->time));
             const std::uint64_t pictures = driver_.session.picture_number() - event->pictures;
+            const double frame = pictures > 1 ? 0.5 * (before + last_ms_) : last_ms_;
+            latency_frames.push_back(latency_ms.back() / frame);
             most_pictures = std::max(most_pictures, pictures);
         }
         events.erase(events.begin(), shown + 1);
@@ -134,7 +135,7 @@ class Turning {
 
     Driver& driver_;
     const inktrace::Renderer& renderer_;
-    Clock::time_point last_shown_;
+    double last_ms_ = 0.0;  ///< that the last picture took
 };
 
 /// Moves the camera at different moments of pictures being refined.
@@ -173,19 +174,20 @@ SessionRow measure_session(const std::filesystem::path& file, int side, int roun
     constexpr int kFrames = 20;
     turning.round(kFrames);  // the pace settles
     for (auto* const times :
-         {&turning.plain_ms, &turning.frame_ms, &turning.latency_ms, &turning.interval_ms}) {
+         {&turning.plain_ms, &turning.frame_ms, &turning.latency_ms, &turning.latency_frames}) {
         times->clear();
     }
     for (int k = 0; k < rounds; ++k) turning.round(kFrames);
     row.plain_ms = quantile(turning.plain_ms, 0.5);
     row.turning_ms = quantile(turning.frame_ms, 0.5);
     row.rays_share = turning.share;
-    row.latency = turning.latency(0.5);
-    row.latency_99 = turning.latency(0.99);
+    row.latency_ms = quantiles(turning.latency_ms);
+    row.latency_frames = quantiles(turning.latency_frames);
     row.latency_pictures = static_cast<int>(turning.most_pictures);
 
     driver.wait_for_picture();
     row.refined_ms = session.painting().frame_ms;
+    row.rests_ms = session.painting().latency_ms;
     const inktrace::Picture expected = renderer.render(session.settings());
     row.exact = std::ranges::equal(session.painting().picture->rgba(), expected.rgba());
 
@@ -198,21 +200,26 @@ SessionRow measure_session(const std::filesystem::path& file, int side, int roun
 }
 
 void print_heading_of_sessions() {
-    fmt::print("{:<30}{:>9}{:>9}{:>7}{:>6}{:>19}{:>10}{:>7}{:>24}\n", "", "no lines", "turning",
-               "ratio", "rays", "latency", "refined", "exact", "gives way, ms");
-    fmt::print("{:<30}{:>9}{:>9}{:>7}{:>6}{:>19}{:>10}{:>7}{:>24}\n", "", "ms", "ms", "", "",
-               "frames, 99 %, most", "ms", "", "median, 99 %, most");
+    fmt::print("{:<26}{:>8}{:>8}{:>6}{:>6}{:>26}{:>28}{:>8}{:>7}{:>6}{:>24}\n", "", "no lines",
+               "turning", "ratio", "rays", "latency, ms", "latency, frames", "refined", "rests",
+               "exact", "gives way, ms");
+    fmt::print("{:<26}{:>8}{:>8}{:>6}{:>6}{:>26}{:>28}{:>8}{:>7}{:>6}{:>24}\n", "", "ms", "ms", "",
+               "", "median, 95, 99 %, most", "likewise, pictures", "ms", "ms", "",
+               "median, 99 %, most");
     std::fflush(stdout);
 }
 
 void print(const SessionRow& row) {
-    fmt::print(
-        "{:<30}{:>9.2f}{:>9.2f}{:>7.2f}{:>6.3g}{:>7.2f}{:>7.2f}{:>5}{:>10.1f}{:>7}{:>8.1f}{:>8.1f}{"
-        ":>8.1"
-        "f}{:>5}\n",
-        row.what, row.plain_ms, row.turning_ms, row.turning_ms / row.plain_ms, row.rays_share,
-        row.latency, row.latency_99, row.latency_pictures, row.refined_ms, row.exact ? "yes" : "NO",
-        row.gives_way_ms, row.gives_way_99_ms, row.gives_way_most_ms, row.moves);
+    const auto& ms = row.latency_ms;
+    const auto& frames = row.latency_frames;
+    fmt::print("{:<26.25}{:>8.2f}{:>8.2f}{:>6.2f}{:>6.3g}", row.what, row.plain_ms, row.turning_ms,
+               row.turning_ms / row.plain_ms, row.rays_share);
+    fmt::print("{:>8.1f}{:>6.1f}{:>6.1f}{:>6.1f}", ms[0], ms[1], ms[2], ms[3]);
+    fmt::print("{:>10.2f}{:>5.2f}{:>5.2f}{:>5.2f}{:>3}", frames[0], frames[1], frames[2], frames[3],
+               row.latency_pictures);
+    fmt::print("{:>8.0f}{:>7.0f}{:>6}{:>9.1f}{:>6.1f}{:>6.1f}{:>4}\n", row.refined_ms, row.rests_ms,
+               row.exact ? "yes" : "NO", row.gives_way_ms, row.gives_way_99_ms,
+               row.gives_way_most_ms, row.moves);
     std::fflush(stdout);
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <string>
 #include <utility>
@@ -13,11 +14,14 @@ struct SessionRow {
     double plain_ms = 0.0;    ///< median, a frame without lines, one ray a pixel
     double turning_ms = 0.0;  ///< median, a frame with lines while the camera turns
     double rays_share = 1.0;  ///< of a pixel's side, that such frames take rays for
-    /// From an event to the first picture that shows it, in frames, that is, in the median time
-    /// from one picture to the next: median, and of 99 %.
-    double latency = 0.0, latency_99 = 0.0;
+    /// From an event to the first picture that shows it, ms: median, 95 %, 99 %, longest.
+    std::array<double, 4> latency_ms{};
+    /// The same in frames, each in those that were drawn meanwhile: a scene that turns its broad
+    /// side takes longer.
+    std::array<double, 4> latency_frames{};
     int latency_pictures =
         0;                    ///< most pictures from an event to the first that shows it, with that
+    double rests_ms = 0.0;    ///< from the last event to the picture in full
     double refined_ms = 0.0;  ///< the picture in full
     bool exact = false;       ///< and equals what `render` gives, byte for byte
     /// From a move during refinement until the painter was free: median, of 99 %, longest.

@@ -1,8 +1,11 @@
 // Pictures of a moving camera, drawn from fewer rays.
 
+#include <fmt/format.h>
+
 #include <array>
 #include <cmath>
 #include <cstdlib>
+#include <utility>
 
 #include "session/pace.h"
 #include "session_owner.h"
@@ -10,9 +13,7 @@
 namespace inktrace::viewer {
 namespace {
 
-namespace fs = std::filesystem;
 using namespace test;
-using ink::test::TemporaryFolder;
 
 TEST(Pace, TakesFewerRaysWhereLinesCostMuchOfAFrame) {
     Pace pace;
@@ -109,6 +110,35 @@ TEST(Draft, DrawsTheLinesOfThePictureInFullInTheirPlacesAndWidths) {
                 EXPECT_LT(draft.stats().rays, full.stats().rays);
             }
         }
+    }
+}
+
+/// A bumpy sheet of triangles of some pixels in a picture of 300.
+std::string fine_mesh(int side) {
+    std::string text = fmt::format("OFF\n{} {} 0\n", side * side, 2 * (side - 1) * (side - 1));
+    for (int i = 0; i < side * side; ++i) {
+        const double x = i % side;
+        const double y = i / side;
+        text += fmt::format("{} {} {}\n", x, y, 2.0 * std::sin(0.3 * x) * std::cos(0.2 * y));
+    }
+    for (int i = 0; i < side * (side - 1); ++i) {
+        if (i % side == side - 1) continue;
+        text += fmt::format("3 {} {} {}\n", i, i + 1, i + side);
+        text += fmt::format("3 {} {} {}\n", i + 1, i + side + 1, i + side);
+    }
+    return text;
+}
+
+TEST(Draft, KeepsTheToneOfLinesBetweenFacesThatAreSmallerThanItsLattice) {
+    const TemporaryFolder folder;
+    const Renderer renderer = draft_scene(folder.write("fine.off", fine_mesh(60)));
+    Settings settings;
+    settings.set("size", "300x300").set("compose", "lines").set("lines", "mesh");
+    const double full = mean_ink(renderer.render(settings));
+    for (const auto& [share, tolerance] : {std::pair{0.75, 0.08}, {0.5, 0.08}, {0.25, 0.15}}) {
+        RenderOptions options;
+        options.draft = share;
+        EXPECT_NEAR(mean_ink(renderer.render(settings, options)), full, tolerance * full) << share;
     }
 }
 

@@ -332,12 +332,6 @@ void Film::store(int x, int y, const Block& block) {
     if (settings_.display) copy_block(size_, x, y, block.display, display_.pixels.data());
 }
 
-void Film::put_display(int x, int y, std::span<const std::uint32_t> pixels) {
-    const std::size_t first = static_cast<std::size_t>(y) * static_cast<std::size_t>(size_.width) +
-                              static_cast<std::size_t>(x);
-    std::ranges::copy(pixels, display_.pixels.begin() + static_cast<std::ptrdiff_t>(first));
-}
-
 void Film::put_pixel(int x, int y, const std::array<float, 4>& shaded) {
     const int x0 = x - x % kBlockSide;
     const int y0 = y - y % kBlockSide;

@@ -65,8 +65,12 @@ class Film {
     /// The same where there is nothing but background.
     void put_background(int x, int y) { store(x, y, background_); }
 
-    /// Writes finished pixels of a row of the display image, which must have been asked for.
-    void put_display(int x, int y, std::span<const std::uint32_t> pixels);
+    /// A row of the display image, which must have been asked for, to be filled with finished
+    /// pixels.
+    std::span<std::uint32_t> display_row(int y) {
+        const auto width = static_cast<std::size_t>(size_.width);
+        return std::span(display_.pixels).subspan(static_cast<std::size_t>(y) * width, width);
+    }
     /// Finishes a single pixel.
     void put_pixel(int x, int y, const std::array<float, 4>& shaded);
 

@@ -13,6 +13,7 @@
 #include "camera/views.h"
 #include "render/edges_method.h"
 #include "render/enlarge.h"
+#include "render/face_density.h"
 #include "render/pipeline.h"
 #include "render/scaled.h"
 
@@ -87,6 +88,13 @@ RenderStats render_fewer_rays(const Pipeline& few, const Pipeline& full,
         enlarge_film(few.film, small.search_tiles, found.tiles, enlargement, loop, full.film);
     }
     add_hidden_strokes(small, found);
+    if (found.faces) {
+        const LineDensity faces = face_density(small, *found.faces, enlargement.factor(), loop);
+        for (LineDensity* density : {&found.thinning.all, &found.thinning.direct}) {
+            *density += faces;
+            density->finish();
+        }
+    }
     FoundLines lines;
     with_threads(threads, [&] { lines = enlarged(found, enlargement, large); });
     draw_lines(large, lines, loop, stats);
@@ -114,7 +122,8 @@ Film render_draft(const Scene& scene, const Tracer& tracer, const Settings& sett
     std::optional<Pipeline> small;
     std::optional<Pipeline> large;
     const LineOutput inked{.ink = wanted.draws_lines(), .drawing = nullptr};
-    const LineOutput kept{.ink = wanted.draws_lines(), .drawing = nullptr, .segments = true};
+    const LineOutput kept{
+        .ink = wanted.draws_lines(), .drawing = nullptr, .segments = true, .counts_faces = false};
     RenderStats result;
     with_threads(wanted.threads, [&] {
         small.emplace(scene, tracer, few, small_film, kept, true, control.ambient, control.cancel);

@@ -42,6 +42,15 @@ void mix_rows(const std::uint32_t* a, const std::uint32_t* b, std::uint32_t shar
     for (std::size_t k = 0; k < count; ++k) out[k] = mix(a[k], b[k], share);
 }
 
+/// The columns of a row, each between two of `row`; shares as in `mix`.
+INKTRACE_MULTIVERSION
+void mix_columns(const std::uint32_t* row, const std::int32_t* first, const std::int32_t* second,
+                 const std::uint32_t* shares, std::size_t count, std::uint32_t* __restrict out) {
+    for (std::size_t k = 0; k < count; ++k) {
+        out[k] = mix(row[first[k]], row[second[k]], shares[k]);
+    }
+}
+
 /// Which side of a segment's line a point lies on.
 float side_of(const Segment& segment, Vec2f point) {
     const Vec2f d = segment.b - segment.a;
@@ -95,40 +104,35 @@ std::vector<int> Enlargement::rows() const {
 PixelEnlarger::PixelEnlarger(const Enlargement& enlargement, const DisplayImage& pixels)
     : enlargement_(enlargement),
       pixels_(pixels),
-      columns_(between(enlargement.large().width, pixels.size.width, enlargement.factor())),
-      rows_(between(enlargement.large().height, pixels.size.height, enlargement.factor())) {}
+      columns_(enlargement.large().width, pixels.size.width, enlargement.factor()),
+      rows_(enlargement.large().height, pixels.size.height, enlargement.factor()) {}
 
-std::vector<PixelEnlarger::Between> PixelEnlarger::between(int large, int small, float factor) {
-    std::vector<Between> result(static_cast<std::size_t>(large));
+PixelEnlarger::Between::Between(int large, int small, float factor) {
+    const auto count = static_cast<std::size_t>(large);
+    for (auto* const places : {&first, &second}) places->reserve(count);
+    share.reserve(count);
     for (int k = 0; k < large; ++k) {
         const float at =
             std::clamp(place(k, large, small, factor), 0.0F, static_cast<float>(small - 1));
-        const int first = static_cast<int>(at);
-        const float share = at - static_cast<float>(first);
-        result[static_cast<std::size_t>(k)] = {
-            first, std::min(first + 1, small - 1),
-            static_cast<std::uint32_t>(share * static_cast<float>(kOne))};
+        first.push_back(static_cast<int>(at));
+        second.push_back(std::min(first.back() + 1, small - 1));
+        const float of_second = at - static_cast<float>(first.back());
+        share.push_back(static_cast<std::uint32_t>(of_second * static_cast<float>(kOne)));
     }
-    return result;
 }
 
 void PixelEnlarger::enlarge_row(int y, Film& film) const {
     const auto width = static_cast<std::size_t>(pixels_.size.width);
-    const Between& rows = rows_[static_cast<std::size_t>(y)];
+    const auto row = static_cast<std::size_t>(y);
     const std::uint32_t* const pixels = pixels_.pixels.data();
     thread_local std::vector<std::uint32_t> mixed;
-    thread_local std::vector<std::uint32_t> out;
     mixed.resize(width);
-    out.resize(columns_.size());
-    mix_rows(pixels + static_cast<std::size_t>(rows.first) * width,
-             pixels + static_cast<std::size_t>(rows.second) * width, rows.share, width,
+    mix_rows(pixels + static_cast<std::size_t>(rows_.first[row]) * width,
+             pixels + static_cast<std::size_t>(rows_.second[row]) * width, rows_.share[row], width,
              mixed.data());
-    for (std::size_t x = 0; x < out.size(); ++x) {
-        const Between& columns = columns_[x];
-        out[x] = mix(mixed[static_cast<std::size_t>(columns.first)],
-                     mixed[static_cast<std::size_t>(columns.second)], columns.share);
-    }
-    film.put_display(0, y, out);
+    const std::span<std::uint32_t> out = film.display_row(y);
+    mix_columns(mixed.data(), columns_.first.data(), columns_.second.data(), columns_.share.data(),
+                out.size(), out.data());
 }
 
 void PixelEnlarger::sharpen(const Tile& tile, std::span<const Segment> lines, Film& film) const {
@@ -186,8 +190,7 @@ void PixelEnlarger::sharpen_cell(int column, int row, std::span<const Segment> l
             }
             constexpr float kLeast = 1e-3F;
             if (weights[0] + weights[1] + weights[2] + weights[3] < kLeast) continue;
-            const std::uint32_t pixel = mixed(corners, weights);
-            film.put_display(x, y, {&pixel, 1});
+            film.display_row(y)[static_cast<std::size_t>(x)] = mixed(corners, weights);
         }
     }
 }

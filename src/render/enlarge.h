@@ -56,17 +56,17 @@ class PixelEnlarger {
     void sharpen(const Tile& tile, std::span<const Segment> lines, Film& film) const;
 
   private:
-    /// Between which two columns or rows of the small picture one of the large picture lies.
+    /// Between which two columns or rows of the small picture those of the large picture lie.
     struct Between {
-        int first, second;
-        std::uint32_t share;  ///< of the second, in 1 / 256
+        Between(int large, int small, float factor);
+        std::vector<std::int32_t> first, second;
+        std::vector<std::uint32_t> share;  ///< of the second, in 1 / 256
     };
-    static std::vector<Between> between(int large, int small, float factor);
     void sharpen_cell(int column, int row, std::span<const Segment> lines, Film& film) const;
 
     Enlargement enlargement_;
     const DisplayImage& pixels_;
-    std::vector<Between> columns_, rows_;
+    Between columns_, rows_;
 };
 
 }  // namespace ink

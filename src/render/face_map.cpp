@@ -56,9 +56,8 @@ FaceMap::FaceMap(const FaceMap& small, Size size, const std::vector<int>& column
       lattice_(1),
       blocks_across_((size.width + kBlockSide - 1) / kBlockSide),
       blocks_down_((size.height + kBlockSide - 1) / kBlockSide),
-      triangles_(static_cast<std::size_t>(blocks_across_) * static_cast<std::size_t>(blocks_down_)),
-      cells_(size.pixels()),
-      blocks_(triangles_.size()) {
+      triangles_(static_cast<std::size_t>(blocks_across_) *
+                 static_cast<std::size_t>(blocks_down_)) {
     constexpr std::size_t kRows = 32;
     parallel_ranges(static_cast<std::size_t>(size.height), kRows,
                     [&](std::size_t begin, std::size_t end) {
@@ -132,6 +131,7 @@ bool FaceMap::marked(Vec2f at) const {
 }
 
 bool FaceMap::any_marked(int x, int y, float reach) const {
+    if (blocks_.empty()) return false;
     // A cell begins half a lattice spacing after its block.
     const int blocks = (static_cast<int>(reach) + 1 + kBlockSide) / kBlockSide;
     const int left = std::max(x / kBlockSide - blocks, 0);

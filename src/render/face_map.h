@@ -21,8 +21,8 @@ class FaceMap {
     FaceMap(const Scene& scene, Size size, int lattice);
 
     /// What the pixels of a larger picture see, if each sees what the nearest one of the `small`
-    /// picture does. `column_of` and `row_of` name
-    /// that one for each column and row.
+    /// picture does. `column_of` and `row_of` name that one for each column and row. No cells of it
+    /// can be marked.
     FaceMap(const FaceMap& small, Size size, const std::vector<int>& column_of,
             const std::vector<int>& row_of);
 
@@ -79,7 +79,7 @@ class FaceMap {
     int lattice_;
     int blocks_across_, blocks_down_;
     Plane<Lanes<std::uint32_t>> triangles_;  ///< by blocks, so that each is one cache line
-    std::vector<std::uint8_t> cells_;        ///< 1: marked
+    std::vector<std::uint8_t> cells_;        ///< 1: marked; empty, as blocks_: none can be
     std::vector<std::uint8_t> blocks_;       ///< 1: one of their cells is
 };
 

@@ -13,7 +13,8 @@ namespace ink {
 /// Keeps what pixel centres, or the lattice points next to them, see.
 void LineFinder::map_faces(const Tile& tile) {
     const Timer timer(stats_.lines_ms);
-    for (std::size_t k = 0; k < blocks_.size(); ++k) {
+    const bool counts = edges_.pipeline.lines.counts_faces;
+    for (std::size_t k = 0; counts && k < blocks_.size(); ++k) {
         // Those cut off at the tile's end belong to the next tile, which may be at work.
         const bool whole = blocks_[k].columns == kBlockSide && blocks_[k].rows == kBlockSide;
         if (whole) add_face_density(k);

@@ -26,6 +26,7 @@ struct LineOutput {
     bool ink = true;             ///< drawn on the film
     Drawing* drawing = nullptr;  ///< null: not kept
     bool segments = false;       ///< kept in full with the lines found, whoever needs them
+    bool counts_faces = true;    ///< how dense lines between faces are, see face_density
 };
 
 /// What every method works with.

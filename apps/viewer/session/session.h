@@ -130,6 +130,7 @@ class Session {
     void load(bool keep_camera);
     void take(LoadResult result);
     void paint(bool in_motion);
+    bool draws_faces() const;
     void apply(Settings settings);
     void fix_camera();
     bool files_are_there();
