@@ -171,7 +171,12 @@ TEST(CrumbOfAFold, ThatHangsOnAnotherLineIsDroppedIfItIsAStub) {
     EXPECT_GT(folds(1.5F), 2);  // longer than two widths, though not than five
 }
 
-TEST(CrumbOfAFold, ThatHangsOnAnotherLineIsDroppedIfItIsShorterThanWide) {
+TEST(CrumbOfAFold, IsDroppedHoweverDeepIfItIsADot) {
+    EXPECT_EQ(mend({{broken_fold(0.1, 100.0, {{20, 24}})}}, 2.0F).lines.size(), 0U);
+    EXPECT_GT(mend({{broken_fold(0.1, 100.0, {{20, 24}})}}, 1.0F).lines.size(), 2U);
+}
+
+TEST(CrumbOfAFold, ThatHangsOnAnotherLineIsDroppedHoweverDeepIfItIsAHair) {
     // A few pixels stick out beside the plate.
     const Surface plate =
         flat(2, 300.0, [](double x, double y) { return x + 0.3 * (y - kLine) < 20.3; });
@@ -193,6 +198,7 @@ TEST(CrumbOfAFold, ThatHangsOnAnotherLineIsDroppedIfItIsShorterThanWide) {
                static_cast<std::ptrdiff_t>(repairs.crumbs.size());
     };
     EXPECT_EQ(folds(6.0F), 0);
+    EXPECT_EQ(folds(2.5F), 0);
     EXPECT_GT(folds(1.0F), 1);
 }
 

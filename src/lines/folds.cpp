@@ -477,7 +477,11 @@ class FoldMender {
             lengths[root(owners_[n])] += length(bridge.b - bridge.a);
         }
         std::vector<std::uint8_t> loose(lines_.size());
-        for (const LooseEnd& end : ends_) loose[root(end.fold)] = 1;
+        std::vector<std::uint8_t> ends_freely(lines_.size());
+        for (const LooseEnd& end : ends_) {
+            loose[root(end.fold)] = 1;
+            if (end.reached == kNone) ends_freely[root(end.fold)] = 1;
+        }
         std::vector<std::uint8_t> stub(lines_.size());
         for (const std::uint32_t k : stubs_) stub[root(k)] = 1;
         const auto is_short = [&](std::uint32_t k) {
@@ -489,8 +493,10 @@ class FoldMender {
             const std::uint32_t group = root(k);
             const bool attached = attached_[group] != 0;
             const float most = attached ? settings_.stub_area : settings_.crumb_area;
-            const bool bump = attached && lengths[group] < settings_.shortest_stub * width_;
-            return (bump && (loose[group] != 0 || stub[group] != 0)) ||
+            const float least = ends_freely[group] != 0                 ? settings_.shortest
+                                : loose[group] != 0 || stub[group] != 0 ? settings_.shortest_stub
+                                                                        : 0.0F;
+            return lengths[group] < least * width_ ||
                    (is_short(k) && lengths[group] * depths[group] < most * width_ * width_);
         };
         for (const std::uint32_t k : folds_) {

@@ -28,8 +28,11 @@ struct FoldSettings {
     /// squares of its width, and it is not longer than so many widths.
     float crumb_area = 5.0F;
     float stub_area = 2.0F;  ///< the same of one that ends on another line on one side
-    /// And that is a crumb, whatever it hides, if it is shorter than so many widths: a bump on the
-    /// other line. Where a mesh turns away at an outline, one lattice finds such a bit of an edge
+    /// And it is a crumb, whatever it hides, if it is shorter than so many widths: a dot, or a hair
+    /// that sticks out of the line on which it ends.
+    float shortest = 2.5F;
+    /// The same of one that lies with both ends on other lines, one of which it does not share: a
+    /// bump on it. Where a mesh turns away at an outline, one lattice finds such a bit of an edge
     /// and another does not.
     float shortest_stub = 1.0F;
     float longest_crumb = 10.0F;
