@@ -17,6 +17,7 @@
 #include "sampling/sampler.h"
 #include "scenes.h"
 #include "shading/ray_sky.h"
+#include "shading/secondary_rays.h"
 
 namespace ink::test {
 namespace {
@@ -67,13 +68,28 @@ std::vector<Seen> look_at(const Scene& scene, const Tracer& tracer, const Ambien
     return seen;
 }
 
-/// Root of the mean square of the difference from 4096 rays.
+/// Whether rays that start just above a point start within another ball, which it all but touches:
+/// they tell nothing.
+bool starts_within_a_ball(const Scene& scene, const Seen& at) {
+    const Vec3f start = at.point + at.normal * kLiftOff;
+    for (const Object& object : scene.objects()) {
+        const auto* shape = std::get_if<Spheres>(&object.shape);
+        for (std::size_t k = 0; shape != nullptr && k < shape->count(); ++k) {
+            const Sphere ball = shape->at(k);
+            if (length(start - ball.centre) < ball.radius) return true;
+        }
+    }
+    return false;
+}
+
+/// Root of the mean square of the difference from 8192 rays.
 double error(const Scene& scene, int side, unsigned one_of, int quality, View view = View::front) {
     const auto tracer = make_tracer(scene);
     const AmbientBake bake(scene, *tracer, quality);
-    const RaySky truth(*tracer, 4096);
+    const RaySky truth(*tracer, 8192);
     double sum = 0.0;
-    const std::vector<Seen> seen = look_at(scene, *tracer, bake, side, one_of, view);
+    std::vector<Seen> seen = look_at(scene, *tracer, bake, side, one_of, view);
+    std::erase_if(seen, [&](const Seen& at) { return starts_within_a_ball(scene, at); });
     for (const Seen& at : seen) {
         const double difference = at.open - truth.openness(at.point, at.normal);
         sum += difference * difference;
@@ -101,11 +117,11 @@ TEST(AmbientOcclusion, OfARibosomeIsWithinOneHundredthOfThatByRays) {
     const std::filesystem::path file = data_dir() / "molecules" / "1ffk_ribosome50S.cif.gz";
     if (!std::filesystem::exists(file)) GTEST_SKIP() << "no " << file;
     const Scene scene(read_file(file).objects);
-    EXPECT_LT(error(scene, 1024, 150, 3), 0.0098);
+    EXPECT_LT(error(scene, 1024, 150, 3), 0.0096);
     for (const View view : {View::iso, View::top, View::left}) {
-        EXPECT_LT(error(scene, 1024, 600, 3, view), 0.0098);
+        EXPECT_LT(error(scene, 1024, 400, 3, view), 0.0095);
     }
-    EXPECT_LT(error(scene, 1024, 300, 5), 0.008);
+    EXPECT_LT(error(scene, 1024, 300, 5), 0.006);
 }
 
 TEST(AmbientOcclusion, GetsBetterWithQuality) {
@@ -232,6 +248,24 @@ TEST(AmbientOcclusion, IsTheSameWhateverTheThreadsTilesAndWhatWasSeenBefore) {
         settings.view.view = View::front;
         EXPECT_EQ(pixels(&kept), expected);
         EXPECT_EQ(pixels(&kept), expected);
+    }
+}
+
+/// Pixels between others are not all computed: also where a tile ends between them.
+TEST(AmbientOcclusion, OfSmallBallsIsTheSameWhateverTheTiles) {
+    std::mt19937 random(6);
+    std::vector<Sphere> balls;
+    for (int i = 0; i < 300; ++i) {
+        balls.push_back({uniform_point(random), 0.06F + 0.03F * uniform(random)});
+    }
+    const Scene scene({sphere_object(balls)});
+    Settings settings = seen_from_front(150);
+    settings.shading.ambient = 1.0F;
+    settings.tile = 256;
+    const auto expected = draw(scene, settings).display().pixels;
+    for (const int tile : {4, 12, 36}) {
+        settings.tile = tile;
+        EXPECT_EQ(draw(scene, settings).display().pixels, expected) << tile;
     }
 }
 

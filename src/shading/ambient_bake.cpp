@@ -122,7 +122,7 @@ std::uint64_t next_number() {
 
 struct AmbientBake::Impl {
     Impl(const Scene& all, const Tracer& scene_tracer, int quality, const std::atomic<bool>* cancel)
-        : scene(all), directions((13 << quality) / 4), rays(scene_tracer, 16 << quality) {
+        : scene(all), directions(3 << quality), rays(scene_tracer, 16 << quality) {
         std::size_t ball_count = 0;
         std::size_t triangles = 0;
         std::size_t corners = 0;
@@ -320,26 +320,109 @@ class Footprints {
     float pixel_;
 };
 
+template <class Body>
+void for_lanes(std::uint32_t lanes, const Body& body) {
+    for (; lanes != 0; lanes &= lanes - 1) body(std::countr_zero(lanes));
+}
+
+/// Lanes that see the same primitive as one.
+std::uint32_t same_surface(const HitPacket& hits, int lane) {
+    std::uint32_t same = 0;
+    for (int i = 0; i < kLanes; ++i) {
+        const bool is_same =
+            hits.object[i] == hits.object[lane] && hits.primitive[i] == hits.primitive[lane];
+        same |= std::uint32_t{is_same} << static_cast<unsigned>(i);
+    }
+    return same;
+}
+
+bool has(std::uint32_t lanes, int lane) { return (lanes >> static_cast<unsigned>(lane) & 1U) != 0; }
+
+/// Of a block of 4 x 4 pixels every other one, but for corners: those which lie between two that
+/// any tile with the pixel has, also one that ends with the first row or column of the block.
+constexpr std::uint32_t kBetween = 0b0100'1010'0101'0010;
+
+/// What lies between two pixels is computed where their openness differs by more. Adds 0.0004 to
+/// the error on a ribosome, and saves an eighth of the pixels.
+constexpr float kAgree = 0.035F;
+
+/// Openness of a point of a ball about half way between two others, by theirs. That of a sky that
+/// is the same for both would be linear in the normal: the mean of the two belongs to the mean of
+/// their normals, which is shorter. None where they differ, or where it lies elsewhere, as in a
+/// curved mirror.
+std::optional<float> between_two(const NormalPacket& normals, const Lanes<float>& open, int a,
+                                 int middle, int b) {
+    constexpr float kHalfWay = 0.999F;  // cosine of an angle
+    if (std::abs(open[a] - open[b]) > kAgree) return {};
+    const Vec3f sum{normals.x[a] + normals.x[b], normals.y[a] + normals.y[b],
+                    normals.z[a] + normals.z[b]};
+    const float size = length(sum);
+    const Vec3f n{normals.x[middle], normals.y[middle], normals.z[middle]};
+    if (dot(n, sum) < kHalfWay * size) return {};
+    return (open[a] + open[b]) / size;
+}
+
 class SeenBake final : public AmbientOcclusion {
   public:
     SeenBake(const AmbientBake::Impl& bake, const Camera& camera)
         : bake_(bake), footprints_(camera) {}
 
     void openness(const SurfacePacket& surface, Lanes<float>& open) const override {
-        for (int i = 0; i < kLanes; ++i) {
-            open[i] = surface.hits.object[i] == kNoObject ? 1.0F : at(surface, i);
+        const HitPacket& hits = surface.hits;
+        // Primitive by primitive: what there is about a ball stays in the nearest cache.
+        std::uint32_t rest = (1U << kLanes) - 1U;
+        while (rest != 0) {
+            const int first = std::countr_zero(rest);
+            const std::uint32_t own = same_surface(hits, first) & rest;
+            rest &= ~own;
+            if (hits.object[first] == kNoObject) {
+                for_lanes(own, [&](int i) { open[i] = 1.0F; });
+            } else {
+                find(surface, own, open);
+            }
         }
     }
 
   private:
+    /// Of lanes that see one primitive. On small balls what lies between two pixels that nearly
+    /// agree is not computed.
+    void find(const SurfacePacket& surface, std::uint32_t own, Lanes<float>& open) const {
+        const HitPacket& hits = surface.hits;
+        const int any = std::countr_zero(own);
+        const bool spares = bake_.ball_sky && radius_px(hits, any) < kLeastBallGrid;
+        const std::uint32_t between = spares ? own & kBetween : 0U;
+        for_lanes(own & ~between, [&](int i) { open[i] = at(surface, i); });
+        for_lanes(between, [&](int i) {
+            float sum = 0.0F;
+            float pairs = 0.0F;
+            const auto add = [&](int a, int b) {
+                if (!has(own, a) || !has(own, b)) return;
+                const auto found = between_two(surface.normals, open, a, i, b);
+                if (!found) return;
+                sum += *found;
+                pairs += 1.0F;
+            };
+            if (i % kBlockSide != 0 && i % kBlockSide != kBlockSide - 1) add(i - 1, i + 1);
+            if (i / kBlockSide != 0 && i / kBlockSide != kBlockSide - 1) {
+                add(i - kBlockSide, i + kBlockSide);
+            }
+            open[i] = pairs > 0.0F ? std::min(sum / pairs, 1.0F) : at(surface, i);
+        });
+    }
+
+    /// Of a ball that a lane sees.
+    float radius_px(const HitPacket& hits, int i) const {
+        const Shape& shape = bake_.scene.objects()[hits.object[i]].shape;
+        const Sphere ball = std::get<Spheres>(shape).at(hits.primitive[i]);
+        return ball.radius / footprints_.at(ball.centre);
+    }
+
     float at(const SurfacePacket& surface, int i) const {
         const HitPacket& hits = surface.hits;
         const Shape& shape = bake_.scene.objects()[hits.object[i]].shape;
         const Vec3f normal{surface.normals.x[i], surface.normals.y[i], surface.normals.z[i]};
-        if (const auto* spheres = std::get_if<Spheres>(&shape)) {
-            const Sphere ball = spheres->at(hits.primitive[i]);
-            const float radius_px = ball.radius / footprints_.at(ball.centre);
-            return bake_.on_ball(hits.object[i], hits.primitive[i], normal, radius_px);
+        if (std::holds_alternative<Spheres>(shape)) {
+            return bake_.on_ball(hits.object[i], hits.primitive[i], normal, radius_px(hits, i));
         }
         if (const auto* mesh = std::get_if<Mesh>(&shape)) {
             const Corners corners = corners_of(*mesh, hits.primitive[i], normal);

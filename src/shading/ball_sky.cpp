@@ -60,8 +60,7 @@ std::vector<Sphere> all_balls(const Scene& scene) {
 
 BallSky::BallSky(const Scene& scene, const SkyDirections& directions,
                  const std::atomic<bool>* cancel)
-    : directions_(directions),
-      far_(all_balls(scene), length(scene.bounds().upper), directions, cancel) {
+    : directions_(directions), far_(all_balls(scene), directions, cancel) {
     double sum = 0.0;
     std::size_t count = 0;
     const Clusters clusters(scene);

@@ -214,11 +214,11 @@ HWY_INLINE void hide(const SkyDirections& directions, const Discs& discs, SkyLef
         const Vec3f to{discs.x[packet][lane], discs.y[packet][lane], discs.z[packet][lane]};
         const float tangent = discs.tangent[packet][lane];
         const float radius = discs.radius[packet][lane];
-        const auto x = set(to.x);
-        const auto y = set(to.y);
-        const auto z = set(to.z);
-        const auto edge = set(discs.edge[packet][lane]);
-        const auto slope = set(discs.slope[packet][lane]);
+        const float slope = discs.slope[packet][lane];
+        const auto x = set(to.x * slope);
+        const auto y = set(to.y * slope);
+        const auto z = set(to.z * slope);
+        const auto edge = set(discs.edge[packet][lane] * slope + 0.5F);
         for (std::size_t word = 0; word < directions.words(); ++word) {
             const std::uint64_t groups =
                 sky.above[word] & reached(directions, word, to, tangent, radius);
@@ -227,8 +227,7 @@ HWY_INLINE void hide(const SkyDirections& directions, const Discs& discs, SkyLef
                 for (int i = 0; i < kLanes; i += kStep) {
                     const auto along = sum_of_products(load(group.x, i), x, load(group.y, i), y,
                                                        load(group.z, i), z);
-                    const auto past = hn::Mul(hn::Sub(along, edge), slope);
-                    const auto bare = hn::Max(hn::Sub(set(0.5F), past), hn::Zero(kFloats));
+                    const auto bare = hn::Max(hn::Sub(edge, along), hn::Zero(kFloats));
                     store(hn::Mul(load(left[g], i), hn::Min(bare, set(1.0F))), left[g], i);
                 }
             });
@@ -301,6 +300,18 @@ void look_out(const SkyView& view, std::size_t g, Surroundings& surroundings) {
     if (all(0)) surroundings.shut[g / kGroupsAWord] |= bit;
 }
 
+/// Groups of a word of which something is left.
+HWY_INLINE std::uint64_t find_left(const SkyLeft& sky, std::size_t word) {
+    std::uint64_t found = 0;
+    for_groups(sky.above[word], word, [&](std::size_t g) {
+        auto most = hn::Zero(kFloats);
+        for (int i = 0; i < kLanes; i += kStep) most = hn::Max(most, load(sky.left[g], i));
+        const bool any = !hn::AllFalse(kFloats, hn::Gt(most, hn::Zero(kFloats)));
+        found |= std::uint64_t{any} << (g % kGroupsAWord);
+    });
+    return found;
+}
+
 float find_openness(const SkyView& view, Surroundings& surroundings, Vec3f n) {
     const SkyDirections& directions = view.directions;
     Scratch& scratch = own_scratch();
@@ -313,21 +324,23 @@ float find_openness(const SkyView& view, Surroundings& surroundings, Vec3f n) {
         sky.above[word] &= ~surroundings.shut[word];
     }
     hide(directions, scratch.discs, sky);
+    // First which groups matter, then what is far in them: loops without branches that none can
+    // guess.
+    for (std::size_t word = 0; word < directions.words(); ++word) {
+        sky.above[word] = find_left(sky, word);
+        for_groups(sky.above[word] & ~surroundings.seen[word], word,
+                   [&](std::size_t g) { look_out(view, g, surroundings); });
+    }
     const Vec3f offset = n * surroundings.window_radius;
     Lanes<float> open_sum;
     for (int i = 0; i < kLanes; i += kStep) {
         auto open = hn::Zero(kFloats);
         for (std::size_t word = 0; word < directions.words(); ++word) {
-            for_groups(sky.above[word], word, [&](std::size_t g) {
-                auto left = load(sky.left[g], i);
-                if (hn::AllFalse(kFloats, hn::Gt(left, hn::Zero(kFloats)))) return;
-                const std::uint64_t bit = std::uint64_t{1} << (g % kGroupsAWord);
-                if ((surroundings.seen[word] & bit) == 0) look_out(view, g, surroundings);
-                if ((surroundings.clear[word] & bit) == 0) {
-                    left = hn::Mul(
-                        left, look_far(view.far.frames[g], surroundings.windows[g], i, offset));
-                }
-                open = hn::Add(open, left);
+            for_groups(sky.above[word] & surroundings.clear[word], word,
+                       [&](std::size_t g) { open = hn::Add(open, load(sky.left[g], i)); });
+            for_groups(sky.above[word] & ~surroundings.clear[word], word, [&](std::size_t g) {
+                const auto free = look_far(view.far.frames[g], surroundings.windows[g], i, offset);
+                open = hn::Add(open, hn::Mul(load(sky.left[g], i), free));
             });
         }
         store(open, open_sum, i);

@@ -37,9 +37,12 @@ std::vector<Pair> pair_up(const SkyDirections& directions) {
 /// miss of a ribosome hides less than the directions in between do.
 constexpr std::size_t kScouts = 8;
 
-/// Of the radius of most balls: the size of a texel, and the most that there may be along a side.
-constexpr float kTexel = 0.62F;
-constexpr float kMostTexels = 256.0F;
+/// The size of a texel, of the radius of most balls, and how many there may be along a side. Maps
+/// of small scenes cost next to nothing and may be finer.
+struct Fineness {
+    float texel, most;
+};
+constexpr std::array<Fineness, 3> kFineness{{{0.8F, 252.0F}, {0.5F, 160.0F}, {0.25F, 32.0F}}};
 /// Rows below a map that kernels may read.
 constexpr std::size_t kSpare = 5;
 
@@ -122,13 +125,26 @@ float mean_radius(std::span<const Sphere> balls) {
     return static_cast<float>(sum / static_cast<double>(std::max(balls.size(), std::size_t{1})));
 }
 
+/// The radius of a ball about the origin that holds all the others.
+float reach_of(std::span<const Sphere> balls) {
+    float reach = 0.0F;
+    for (const Sphere& ball : balls) reach = std::max(reach, length(ball.centre) + ball.radius);
+    return reach;
+}
+
 }  // namespace
 
-FarSky::FarSky(std::span<const Sphere> balls, float radius, const SkyDirections& directions,
+FarSky::FarSky(std::span<const Sphere> balls, const SkyDirections& directions,
                const std::atomic<bool>* cancel)
-    : steps(253.0F / (2.0F * radius)), lowest(-radius), frames(directions.groups.size()) {
-    const float finest = 2.0F * radius / std::max(mean_radius(balls) * kTexel, 1e-6F * radius);
-    const float needed = std::min(finest, kMostTexels - 4.0F);
+    : frames(directions.groups.size()) {
+    const float radius = reach_of(balls);
+    lowest = -radius;
+    steps = 253.0F / (2.0F * radius);
+    const float balls_across = 2.0F * radius / std::max(mean_radius(balls), 1e-6F * radius);
+    float needed = 0.0F;
+    for (const Fineness& fine : kFineness) {
+        needed = std::max(needed, std::min(balls_across / fine.texel, fine.most));
+    }
     side_tiles = static_cast<std::size_t>(std::ceil((needed + 4.0F) / kTileSide));
     texels = 0.5F * static_cast<float>(side() - 4) / radius;
     tiles = std::make_unique_for_overwrite<Tile[]>(directions.groups.size() * kLanes * map_tiles());

@@ -28,9 +28,9 @@ struct FarSky {
         std::array<std::uint8_t, std::size_t{kTileSide} * kTileSide> heights;  ///< 0: no ball
     };
 
-    /// `radius`: of a ball about the origin that holds all the others. Uses all threads that
-    /// parallel_ranges does. Throws Cancelled once `cancel` is true (null: never).
-    FarSky(std::span<const Sphere> balls, float radius, const SkyDirections& directions,
+    /// Uses all threads that parallel_ranges does. Throws Cancelled once `cancel` is true (null:
+    /// never).
+    FarSky(std::span<const Sphere> balls, const SkyDirections& directions,
            const std::atomic<bool>* cancel = nullptr);
 
     /// Where the maps of a group's directions lie: texel = middle + texels * (p . right, p . up).
