@@ -78,14 +78,16 @@ class Seen {
         return hits;
     }
     /// Of points as `pixels` gives them.
+    /// The first packets are the cells of a raster.
     std::vector<HitPacket> trace_raster(const std::vector<PointPacket>& points) const {
         const auto tracer = frame_->tile_tracer();
         tracer->enter(whole());
-        std::vector<std::uint32_t> cells(points.size());
+        const int across = size_.width / kBlockSide;
+        const int down = size_.height / kBlockSide;
+        std::vector<std::uint32_t> cells(static_cast<std::size_t>(across * down));
         std::iota(cells.begin(), cells.end(), 0U);
         std::vector<HitPacket> hits(points.size());
-        tracer->find({0, 0, kBlockSide, size_.width / kBlockSide, size_.height / kBlockSide, cells},
-                     points);
+        tracer->find({0, 0, kBlockSide, across, down, cells, cells.size()}, points);
         tracer->resolve(0, points, rays(points), hits);
         return hits;
     }
@@ -585,12 +587,14 @@ TEST(ScreenTracer, GivesGlyphsTheSameBitsOnEveryInstructionSet) {
 
 // ---- Rasters ----
 
-TEST(ScreenTracer, GivesRastersTheHitsOfTheirPoints) {
+TEST(ScreenTracer, GivesRastersAndPacketsBesideThemTheHitsOfTheirPoints) {
     std::mt19937 random(15);
     std::vector<Object> objects = random_objects(18, 300, 300);
     objects.push_back(random_glyphs({.kind = GlyphKind::box}, 60, 0.3, random));
     const Seen seen(std::move(objects), {}, kSmall);
-    const auto points = seen.pixels();
+    auto points = seen.pixels();
+    const auto others = seen.random_points(4, 100);
+    points.insert(points.end(), others.begin(), others.end());
     const auto expected = seen.trace(points);
     const auto hits = seen.trace_raster(points);
     for (std::size_t k = 0; k < points.size(); ++k) {

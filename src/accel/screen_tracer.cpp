@@ -64,12 +64,14 @@ class ScreenTileTracer final : public TileTracer {
     void find(const BlockRaster& raster, std::span<const PointPacket> points) override {
         start(points);
         find_fronts(lay_out(raster));
+        for (std::size_t k = raster.packets; k < points.size(); ++k) find_front(fronts_[k]);
     }
     void resolve(std::size_t first, std::span<const PointPacket> points,
                  std::span<const RayPacket> rays, std::span<HitPacket> hits) override;
     void identify(std::span<const PointPacket> points, std::span<const RayPacket> rays,
                   std::span<HitPacket> hits) override;
     bool needs_rays() const override { return false; }
+    bool rays_travel_alone() const override { return true; }
     bool reaches(const ScreenBox& box) const override {
         return candidates_.reach(view_.window(box));
     }
@@ -262,7 +264,7 @@ ScreenEffort ScreenTileTracer::probe(Vec2f corner, std::uint32_t most_clusters) 
             points[k].y[i] = corner.y + static_cast<float>(row) + 0.5F;
         }
     }
-    const BlockRaster raster{corner.x, corner.y, kSide, kProbeSide, kProbeSide, cells};
+    const BlockRaster raster{corner.x, corner.y, kSide, kProbeSide, kProbeSide, cells, kBlocks};
     enter({corner.x, corner.y, corner.x + kSide * kProbeSide, corner.y + kSide * kProbeSide});
     start(points);
     find_fronts(lay_out(raster), most_clusters);

@@ -68,6 +68,9 @@ class MergedTileTracer final : public TileTracer {
         second_->resolve(first, points, rays, others_);
         for (std::size_t k = 0; k < hits.size(); ++k) take_nearer(others_[k], hits[k]);
     }
+    bool rays_travel_alone() const override {
+        return first_->rays_travel_alone() && second_->rays_travel_alone();
+    }
     bool reaches(const ScreenBox& box) const override {
         return first_->reaches(box) || second_->reaches(box);
     }

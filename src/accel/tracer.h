@@ -71,6 +71,7 @@ struct BlockRaster {
     float left, top, side;  ///< of the first cell, pixels; points keep off the edges of their cell
     int across, down;       ///< cells
     std::span<const std::uint32_t> packet_at;  ///< a cell, row by row: its packet, or kNone
+    std::size_t packets = 0;                   ///< so many, which come first, lie on the raster
 };
 
 /// Traces camera rays of one picture, one thread's share of them.
@@ -86,9 +87,9 @@ class TileTracer {
     virtual void intersect(std::span<const PointPacket> points, std::span<const RayPacket> rays,
                            std::span<HitPacket> hits) = 0;
 
-    /// The same in two steps for packets that lie on a raster: `find` looks for all hits, `resolve`
-    /// tells those of packets `first` and on, of which it is given the points and rays. So hits can
-    /// be made use of a few at a time, while they are in the cache.
+    /// The same in two steps for packets that lie on a raster, and any others that follow: `find`
+    /// looks for all hits, `resolve` tells those of packets `first` and on, of which it is given
+    /// the points and rays. So hits can be made use of a few at a time, while they are in the cache.
     virtual void find(const BlockRaster& /*raster*/, std::span<const PointPacket> /*points*/) {}
     virtual void resolve(std::size_t /*first*/, std::span<const PointPacket> points,
                          std::span<const RayPacket> rays, std::span<HitPacket> hits) {
@@ -102,6 +103,9 @@ class TileTracer {
         intersect(points, rays, hits);
     }
     virtual bool needs_rays() const { return true; }
+
+    /// Whether hits do not depend on which rays share a packet.
+    virtual bool rays_travel_alone() const { return false; }
 
     /// False only if no ray through a point of the box, which lies within the area, hits anything.
     virtual bool reaches(const ScreenBox& /*box*/) const { return true; }

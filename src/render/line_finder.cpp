@@ -17,8 +17,10 @@ constexpr std::size_t kMostPointsInPixel = std::size_t{kMostLatticePoints} * kMo
 ScreenBox screen_box(const Block& block, float spacing) {
     const auto left = static_cast<float>(block.x);
     const auto top = static_cast<float>(block.y);
-    return {left * spacing, top * spacing, (left + kBlockSide) * spacing,
-            (top + kBlockSide) * spacing};
+    const int columns = block.is_strip() ? block.columns : kBlockSide;
+    const int rows = block.is_strip() ? block.rows : kBlockSide;
+    return {left * spacing, top * spacing, (left + static_cast<float>(columns)) * spacing,
+            (top + static_cast<float>(rows)) * spacing};
 }
 
 }  // namespace
@@ -49,8 +51,8 @@ void LineFinder::trace_lattice(const Tile& tile) {
     grid_.resize((tile.x1 - tile.x0) * q + 1, (tile.y1 - tile.y0) * q + 1);
     std::ranges::fill(grid_.id, kBackground);
 
-    // The last column and row of blocks reach beyond the grid.
-    const float beyond = kBlockSide * grid_.spacing;
+    // The last column and row of blocks reach beyond the grid, but for strips.
+    const float beyond = static_cast<float>(lays_strips() ? 1 : kBlockSide) * grid_.spacing;
     sampler_.enter({static_cast<float>(tile.x0), static_cast<float>(tile.y0),
                     static_cast<float>(tile.x1) + beyond, static_cast<float>(tile.y1) + beyond});
 
@@ -75,21 +77,42 @@ void LineFinder::trace_lattice(const Tile& tile) {
     timer.lap(stats_.shade_ms);
 }
 
+/// Whether points of one more column and row than blocks have are traced in strips.
+bool LineFinder::lays_strips() const { return sampler_.rays_travel_alone() && !specular_; }
+
 void LineFinder::lay_blocks() {
-    blocks_across_ = (grid_.width + kBlockSide - 1) / kBlockSide;
-    const int blocks_down = (grid_.height + kBlockSide - 1) / kBlockSide;
+    const auto in_blocks = [&](int points) {
+        return lays_strips() && points % kBlockSide == 1 ? points - 1 : points;
+    };
+    columns_in_blocks_ = in_blocks(grid_.width);
+    rows_in_blocks_ = in_blocks(grid_.height);
+    blocks_across_ = (columns_in_blocks_ + kBlockSide - 1) / kBlockSide;
     block_at_.clear();
     blocks_.clear();
-    for (int j = 0; j < blocks_down; ++j) {
-        for (int i = 0; i < blocks_across_; ++i) {
-            const Block block{grid_.x0 + i * kBlockSide, grid_.y0 + j * kBlockSide,
-                              std::min(kBlockSide, grid_.width - i * kBlockSide),
-                              std::min(kBlockSide, grid_.height - j * kBlockSide)};
-            const bool near = sampler_.reaches(screen_box(block, grid_.spacing));
-            block_at_.push_back(near ? static_cast<std::uint32_t>(blocks_.size()) : kEmptyBlock);
-            if (near) blocks_.push_back(block);
+    for (int j = 0; j < rows_in_blocks_; j += kBlockSide) {
+        for (int i = 0; i < columns_in_blocks_; i += kBlockSide) {
+            block_at_.push_back(
+                lay_block({grid_.x0 + i, grid_.y0 + j, std::min(kBlockSide, columns_in_blocks_ - i),
+                           std::min(kBlockSide, rows_in_blocks_ - j)}));
         }
     }
+    strips_down_.clear();
+    strips_across_.clear();
+    for (int j = 0; columns_in_blocks_ < grid_.width && j < grid_.height; j += kLanes) {
+        strips_down_.push_back(lay_block({grid_.x0 + columns_in_blocks_, grid_.y0 + j, 1,
+                                          std::min(kLanes, grid_.height - j), 1}));
+    }
+    for (int i = 0; rows_in_blocks_ < grid_.height && i < columns_in_blocks_; i += kLanes) {
+        strips_across_.push_back(lay_block({grid_.x0 + i, grid_.y0 + rows_in_blocks_,
+                                            std::min(kLanes, columns_in_blocks_ - i), 1, kLanes}));
+    }
+}
+
+/// Its place among those that are traced.
+std::uint32_t LineFinder::lay_block(const Block& block) {
+    if (!sampler_.reaches(screen_box(block, grid_.spacing))) return kEmptyBlock;
+    blocks_.push_back(block);
+    return static_cast<std::uint32_t>(blocks_.size() - 1);
 }
 
 /// Their hits, normals and samples.
@@ -158,7 +181,7 @@ void LineFinder::copy_to_grid(std::size_t block, const T* from, T* plane) const 
         } else {
             std::copy_n(from, place.columns, to);
         }
-        from += kBlockSide;
+        from += place.across;
         to += grid_.width;
     }
 }
@@ -242,10 +265,10 @@ void LineFinder::put_aovs(Block block) {
 
 /// Linear, premultiplied colour of a point of the grid.
 PixelColor LineFinder::color_at(int i, int j) const {
-    const std::uint32_t k = block_index(i / kBlockSide, j / kBlockSide);
+    const auto [k, place] = place_of(i, j);
     const bool empty = k == kEmptyBlock;
     const ColorPacket& colors = empty ? edges_.pipeline.shader.background() : colors_[k];
-    const int lane = empty ? 0 : j % kBlockSide * kBlockSide + i % kBlockSide;
+    const int lane = empty ? 0 : place;
     return {colors.r[lane], colors.g[lane], colors.b[lane], colors.a[lane]};
 }
 
@@ -289,7 +312,7 @@ void LineFinder::measure_brightness() {
         for (int j = 0; j < block.rows; ++j) {
             for (int i = 0; i < block.columns; ++i) {
                 brightness_[grid_.index(block.x - grid_.x0 + i, block.y - grid_.y0 + j)] =
-                    bright[j * kBlockSide + i];
+                    bright[j * block.across + i];
             }
         }
     }
@@ -419,9 +442,8 @@ void LineFinder::close_slits() {
             const SuspectEdge& edge = suspects_[k];
             const auto [r, g, b, a] =
                 color_at(edge.i + (edge.down ? 0 : 1), edge.j + (edge.down ? 1 : 0));
-            const std::uint32_t block = block_index(edge.i / kBlockSide, edge.j / kBlockSide);
+            const auto [block, lane] = place_of(edge.i, edge.j);
             if (block == kEmptyBlock) continue;
-            const int lane = edge.j % kBlockSide * kBlockSide + edge.i % kBlockSide;
             ColorPacket& colors = colors_[block];
             colors.r[lane] = r;
             colors.g[lane] = g;
@@ -434,10 +456,9 @@ void LineFinder::close_slits() {
 
 /// Whether a point of the grid saw a ball or the background, and which.
 bool LineFinder::see_ball(int i, int j, BallHit& hit) const {
-    const std::uint32_t block = block_index(i / kBlockSide, j / kBlockSide);
+    const auto [block, lane] = place_of(i, j);
     if (block == kEmptyBlock) return true;
     const HitPacket& hits = hits_[block];
-    const int lane = j % kBlockSide * kBlockSide + i % kBlockSide;
     const std::uint32_t object = hits.object[lane];
     if (object == kNoObject) return true;
     hit.id = grid_.id[grid_.index(i, j)];
@@ -449,9 +470,8 @@ bool LineFinder::see_ball(int i, int j, BallHit& hit) const {
 
 /// Whether a point of the grid saw a mesh that can be walked on or the background, and where.
 bool LineFinder::see_mesh(int i, int j, SurfaceKey& key) const {
-    const std::uint32_t block = block_index(i / kBlockSide, j / kBlockSide);
+    const auto [block, lane] = place_of(i, j);
     if (block == kEmptyBlock) return true;
-    const int lane = j % kBlockSide * kBlockSide + i % kBlockSide;
     const std::uint32_t object = hits_[block].object[lane];
     if (object == kNoObject) return true;
     key = {object, hits_[block].primitive[lane]};

@@ -113,6 +113,8 @@ class LineFinder {
 
     void trace_lattice(const Tile& tile);
     void lay_blocks();
+    bool lays_strips() const;
+    std::uint32_t lay_block(const Block& block);
     void take(std::size_t first, std::size_t count);
     void fill_grid(std::size_t block);
     template <class T>
@@ -139,8 +141,8 @@ class LineFinder {
     };
     /// What a point of the grid hit; it must not be background.
     LatticeHit hit_at(int i, int j) const {
-        return {&hits_[block_index(i / kBlockSide, j / kBlockSide)],
-                j % kBlockSide * kBlockSide + i % kBlockSide};
+        const BlockPlace place = place_of(i, j);
+        return {&hits_[place.block], place.lane};
     }
     bool is_smooth(const SuspectEdge& edge) const;
     void describe(std::size_t point, Sample& sample) const;
@@ -159,6 +161,21 @@ class LineFinder {
     void mark(int i, int j);
     void cross_all_faces();
     bool marked(int i, int j) const;
+    /// Where a point of the grid is.
+    struct BlockPlace {
+        std::uint32_t block;  ///< or kEmptyBlock
+        int lane;
+    };
+    BlockPlace place_of(int i, int j) const {
+        if (i < columns_in_blocks_ && j < rows_in_blocks_) {
+            return {block_index(i / kBlockSide, j / kBlockSide),
+                    j % kBlockSide * kBlockSide + i % kBlockSide};
+        }
+        const bool down = i >= columns_in_blocks_;
+        const std::vector<std::uint32_t>& strips = down ? strips_down_ : strips_across_;
+        const int along = down ? j : i;
+        return {strips[static_cast<std::size_t>(along / kLanes)], along % kLanes};
+    }
     std::uint32_t block_index(int i, int j) const {
         return block_at_[static_cast<std::size_t>(j) * static_cast<std::size_t>(blocks_across_) +
                          static_cast<std::size_t>(i)];
@@ -188,8 +205,10 @@ class LineFinder {
     std::optional<SpecularSearch> specular_;
     Connector connector_;
     SampleGrid grid_;
+    int columns_in_blocks_ = 0, rows_in_blocks_ = 0;  ///< of points; the rest are in strips
     int blocks_across_ = 0;
     std::vector<std::uint32_t> block_at_;  ///< of the tile's blocks, row by row; or kEmptyBlock
+    std::vector<std::uint32_t> strips_down_, strips_across_;  ///< of the last column and row
     std::vector<Block> blocks_;
     std::vector<HitPacket> hits_;
     std::vector<NormalPacket> normals_;

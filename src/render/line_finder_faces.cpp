@@ -37,7 +37,7 @@ void LineFinder::map_block(int x, int y) {
         const int i = (x + n % kBlockSide) * q + q / 2 - grid_.x0;
         const int j = (y + n / kBlockSide) * q + q / 2 - grid_.y0;
         if (i >= grid_.width || j >= grid_.height) continue;  // beyond the picture
-        if (block_index(i / kBlockSide, j / kBlockSide) == kEmptyBlock) continue;
+        if (place_of(i, j).block == kEmptyBlock) continue;
         const LatticeHit hit = hit_at(i, j);
         faces_->put(x + n % kBlockSide, y + n / kBlockSide, *hit.hits, hit.lane);
     }

@@ -66,8 +66,8 @@ void RidgeSearch::copy(const LatticeView& lattice) {
     for (std::size_t k = 0; k < lattice.blocks.size(); ++k) {
         const Block& block = lattice.blocks[k];
         for (int lane = 0; lane < kLanes; ++lane) {
-            const int i = lane % kBlockSide;
-            const int j = lane / kBlockSide;
+            const int i = block.column(lane);
+            const int j = block.row(lane);
             const std::uint32_t object = lattice.hits[k].object[lane];
             if (i >= block.columns || j >= block.rows || object == kNoObject) continue;
             const std::size_t n = grid_.index(block.x - grid_.x0 + i, block.y - grid_.y0 + j);

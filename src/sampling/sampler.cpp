@@ -1,6 +1,7 @@
 #include "sampling/sampler.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include "base/multiversion.h"
@@ -13,9 +14,11 @@ INKTRACE_MULTIVERSION
 void place_blocks(float spacing, std::span<const Block> blocks, Vec2f offset, PointPacket* points) {
     for (const Block block : blocks) {  // a copy: nothing that the loop writes can change it
         PointPacket& packet = *points++;
+        const int mask = block.across - 1;
+        const int shift = std::countr_zero(static_cast<unsigned>(block.across));
         for (int i = 0; i < kLanes; ++i) {
-            const int column = i % kBlockSide;
-            const int row = i / kBlockSide;
+            const int column = i & mask;
+            const int row = i >> shift;
             packet.x[i] = (static_cast<float>(block.x + column) + 0.5F) * spacing + offset.x;
             packet.y[i] = (static_cast<float>(block.y + row) + 0.5F) * spacing + offset.y;
             packet.active[i] = -static_cast<int>(column < block.columns && row < block.rows);
@@ -112,9 +115,10 @@ void Sampler::find_blocks(std::span<const Block> blocks, Vec2f offset) {
     }
     make_room();
     // A few blocks find their own way faster.
-    constexpr std::size_t kFew = 4;
-    found_ = blocks.size() > kFew;
-    if (found_) tracer_->find(raster_of(blocks, offset), points_);
+    constexpr std::ptrdiff_t kFew = 4;
+    const auto strips = std::ranges::find_if(blocks, &Block::is_strip);
+    found_ = strips - blocks.begin() > kFew;
+    if (found_) tracer_->find(raster_of({blocks.begin(), strips}, offset), points_);
 }
 
 void Sampler::take_hits(std::size_t first, std::span<HitPacket> hits) {
@@ -160,7 +164,8 @@ BlockRaster Sampler::raster_of(std::span<const Block> blocks, Vec2f offset) {
             kBlockSide * spacing_,
             across,
             down,
-            cells_};
+            cells_,
+            blocks.size()};
 }
 
 void Sampler::place_stencils(Block block, Vec2f offset, std::span<const Vec2f> stencil) {

@@ -12,10 +12,16 @@ namespace ink {
 
 /// A block of 4 x 4 lattice points (pixels, where there is one point a pixel) by its upper left
 /// one. Blocks are aligned to the whole picture, so that the same rays travel together however the
-/// picture is cut into tiles.
+/// picture is cut into tiles. Where that makes no difference (`rays_travel_alone`), a block may
+/// also be a strip: sixteen points of a row or of a column.
 struct Block {
     int x = 0, y = 0;
     int columns = kBlockSide, rows = kBlockSide;  ///< of it that are wanted; the rest is not traced
+    int across = kBlockSide;                      ///< lanes a row: 4, or 16 or 1 of a strip
+
+    int column(int lane) const { return lane % across; }
+    int row(int lane) const { return lane / across; }
+    bool is_strip() const { return across != kBlockSide; }
 };
 
 /// Traces sample rays for blocks of a lattice of `per_pixel` points along a pixel's side, point i
@@ -32,14 +38,16 @@ class Sampler {
     void enter(const ScreenBox& area);
     /// Within that part: false only if no ray through a point of the box hits anything.
     bool reaches(const ScreenBox& box) const;
+    /// Whether hits do not depend on which rays travel together.
+    bool rays_travel_alone() const { return tracer_->rays_travel_alone(); }
 
     /// One packet a block: the rays through every point plus `offset` (pixels). Normals of hits
     /// come back with unit length and facing the ray's origin.
     void trace_blocks(std::span<const Block> blocks, Vec2f offset, std::span<HitPacket> hits);
 
-    /// The same in two steps: `find_blocks` looks for the hits, `take_hits` makes the rays and hits
-    /// of blocks `first` and on, as many as `hits` has room for. So all that is done with a few
-    /// blocks finds them in the nearest cache.
+    /// The same in two steps, strips last: `find_blocks` looks for the hits, `take_hits` makes the
+    /// rays and hits of blocks `first` and on, as many as `hits` has room for. So all that is done
+    /// with a few blocks finds them in the nearest cache.
     void find_blocks(std::span<const Block> blocks, Vec2f offset);
     void take_hits(std::size_t first, std::span<HitPacket> hits);
 
