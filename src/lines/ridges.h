@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "base/vec.h"
-#include "lines/segment.h"
 #include "sampling/samples.h"
 
 // Apparent ridges: Judd, Durand and Adelson, Apparent Ridges for Line Drawing, SIGGRAPH 2007. The
@@ -28,7 +27,8 @@ struct RidgeEstimate {
     float slope = 0.0F;     ///< derivative of q1^2 along t1, whose zero is the ridge
     Vec2f along;            ///< t1, unit; of either sense, by which `slope` has its sign
     Vec2f gradient;         ///< of `slope` on screen
-    float strength = 0.0F;  ///< [0, 1]; 0: no maximum is near, or the normal turns too little
+    float bend = 0.0F;      ///< derivative of `slope` along t1: below zero about a maximum
+    float strength = 0.0F;  ///< [0, 1]; 0: the normal turns too little, or in no direction most
 
     /// Distance from the point to the ridge, pixels.
     float distance() const;
@@ -44,7 +44,7 @@ class RidgeEstimator {
 
     std::size_t size() const { return weights_.size(); }
 
-    /// Unit normals at the offsets, in the same order. Strength 0 where there is no ridge.
+    /// Unit normals at the offsets, in the same order. Strength 0 also where no maximum is near.
     RidgeEstimate estimate(std::span<const Vec3f> normals) const;
 
     static constexpr std::size_t kDerivatives = 9;  ///< x, y, xx, xy, yy, xxx, xxy, xyy, yyy
@@ -58,30 +58,5 @@ class RidgeEstimator {
 
 /// Whether two hits lie on one smooth piece of surface, so that their normals may be compared.
 bool one_surface(const Sample& a, const Sample& b);
-
-/// Points of a lattice about one of its points, `radius` lattice spacings away at most: two rings
-/// rounded to the lattice, and the point itself.
-struct LatticeStep {
-    int i, j;
-};
-std::vector<LatticeStep> ridge_neighbourhood(int radius);
-
-/// With which weights the normals of a neighbourhood go into the derivatives at its middle: the
-/// same at all points of a lattice of this spacing (pixels).
-struct RidgePattern {
-    RidgePattern(int radius, float spacing);
-
-    /// Two points opposite each other, by one of them.
-    struct Pair {
-        LatticeStep step;
-        std::array<float, RidgeEstimator::kDerivatives> weights;
-    };
-    std::vector<Pair> pairs;
-};
-
-/// The ridges in a grid of samples, as segments of type ridge in its cells, `apron` points of which
-/// on every side are not looked into: they must be at least the pattern's radius.
-void find_ridges(const SampleGrid& grid, int apron, const RidgePattern& pattern,
-                 const RidgeSettings& settings, std::vector<Segment>& segments);
 
 }  // namespace ink

@@ -38,6 +38,11 @@ struct Edges {
     /// Index of the tile that a point was searched in.
     std::size_t search_tile_at(Vec2f point) const;
     std::size_t search_tiles_across() const;
+    /// What all search tiles cover.
+    Tile search_area() const {
+        const Tile& last = search_tiles.back();
+        return {search_tiles.front().x0, search_tiles.front().y0, last.x1, last.y1};
+    }
     std::size_t style_of(LineType type, std::uint32_t object) const;
     /// Whether self-occlusions are made whole once all are found.
     bool mends_lines() const {
@@ -52,6 +57,7 @@ struct Edges {
     /// Whether the line where a face goes out of sight covers all that its edges behind it could
     /// ink, so that lines between faces need not end there.
     bool outlines_cover_faces() const;
+    bool wants_ridges() const { return find_lines && wanted.has(LineType::ridge) && !balls_only; }
 
     /// Whether both sides of a line belong to one whole, where that makes a difference.
     bool is_inner(const Segment& segment) const;

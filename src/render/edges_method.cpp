@@ -7,6 +7,7 @@
 #include "render/hidden_lines.h"
 #include "render/line_drawer.h"
 #include "render/line_finder.h"
+#include "render/line_mask.h"
 #include "render/mend_lines.h"
 
 namespace ink {
@@ -63,11 +64,60 @@ void keep_lines(const Edges& edges, const std::vector<TileLines>& found,
     }
 }
 
-/// From what all workers have counted.
+/// Where there are lines on surfaces seen directly, but not between faces, so near that a ridge
+/// beside them would touch them.
+LineMask mask_of(const Edges& edges, const std::vector<TileLines>& found) {
+    LineMask mask(edges.search_area());
+    const auto mark = [&](Vec2f a, Vec2f b, std::size_t style) {
+        constexpr float kBetween = 0.5F;  // what the eye does not tell from none, pixels
+        const float ridge = edges.ink.styles[edges.style_of(LineType::ridge, 0)].width_px;
+        mask.mark((a + b) * 0.5F, 0.5F * (edges.ink.styles[style].width_px + ridge) + kBetween);
+    };
+    for (const TileLines& tile : found) {
+        for (const Segment& segment : tile.segments) {
+            if (segment.level > 0 || segment.type == LineType::mesh) continue;
+            if (edges.wanted.has(segment.type)) mark(segment.a, segment.b, edges.style_of(segment));
+        }
+        if (edges.keeps_segments()) continue;
+        for (const InkStroke& stroke : tile.strokes) {
+            const auto type = static_cast<LineType>(stroke.style % kLineTypes);
+            if (stroke.direct && type != LineType::mesh) mark(stroke.a, stroke.b, stroke.style);
+        }
+    }
+    return mask;
+}
+
+/// Once all tiles have kept what ridges are found from, and the other lines are there. Returns what
+/// they add to the density of lines.
+LineDensity add_ridges(const Edges& edges, RidgeSearch& search, WorkLoop& loop, FoundLines& found,
+                       RenderStats& stats) {
+    LineDensity density = edges.no_lines;
+    RenderStats serial;
+    search.find(loop, stats);
+    {
+        const Timer timer(serial.lines_ms);
+        const Timer phase(serial.ridges_ms);
+        const LineMask others = mask_of(edges, found.tiles);
+        for (Segment& ridge : search.take(others)) {
+            edges.apply_distance(ridge);
+            TileLines& tile = found.tiles[edges.search_tile_at((ridge.a + ridge.b) * 0.5F)];
+            const InkStroke stroke = make_ink_stroke(ridge, edges.style_of(ridge));
+            density.add(stroke, edges.ink.styles[stroke.style].width_px * stroke.width_scale);
+            if (edges.keeps_segments()) tile.segments.push_back(ridge);
+            if (edges.draw_lines) tile.strokes.push_back(stroke);
+        }
+    }
+    for (double RenderStats::*const ms : {&RenderStats::lines_ms, &RenderStats::ridges_ms}) {
+        stats.*ms += serial.*ms * loop.threads();  // the others wait
+    }
+    return density;
+}
+
+/// From what all workers have counted, and the ridges.
 LineThinning thinning_of(const Edges& edges,
-                         const std::vector<std::unique_ptr<LineFinder>>& finders) {
-    LineThinning thinning{edges.no_lines, edges.no_lines,
-                          static_cast<float>(edges.pipeline.settings.line_density)};
+                         const std::vector<std::unique_ptr<LineFinder>>& finders,
+                         const LineDensity& ridges) {
+    LineThinning thinning{ridges, ridges, static_cast<float>(edges.pipeline.settings.line_density)};
     const bool goes_on = edges.pipeline.goes_on();
     for (const auto& finder : finders) {
         if (!finder) continue;
@@ -112,12 +162,17 @@ FoundLines find_lines(const Edges& edges, WorkLoop& loop, RenderStats& stats) {
     found.toned.resize(edges.search_tiles.size());
     found.hidden.resize(edges.search_tiles.size());
     if (edges.wants_faces()) found.faces.emplace(pipeline.scene, pipeline.settings.size, edges.q);
+    std::optional<RidgeSearch> ridges;
+    if (edges.wants_ridges()) {
+        ridges.emplace(pipeline, edges.q, edges.search_area());
+        loop.expect(ridges->items());
+    }
     std::vector<std::unique_ptr<LineFinder>> finders(pool);
     std::vector<std::unique_ptr<HiddenLineFinder>> behind(pool);
     loop.run(edges.search_tiles.size(), [&](std::size_t i, std::size_t worker) {
         if (!finders[worker]) {
-            finders[worker] =
-                std::make_unique<LineFinder>(edges, found.faces ? &*found.faces : nullptr);
+            finders[worker] = std::make_unique<LineFinder>(
+                edges, found.faces ? &*found.faces : nullptr, ridges ? &*ridges : nullptr);
         }
         found.tiles[i] = finders[worker]->search(edges.search_tiles[i]);
         if (edges.tones) found.toned[i] = finders[worker]->take_toned();
@@ -128,7 +183,9 @@ FoundLines find_lines(const Edges& edges, WorkLoop& loop, RenderStats& stats) {
 
     finish_fringes(edges, found.tiles, loop);
     if (edges.mends_lines()) stats += mend_lines(edges, finders, found.tiles, found.toned);
-    found.thinning = thinning_of(edges, finders);
+    const LineDensity ridge_density =
+        ridges ? add_ridges(edges, *ridges, loop, found, stats) : edges.no_lines;
+    found.thinning = thinning_of(edges, finders, ridge_density);
     stats += total_of(finders);
     stats += total_of(behind);
     return found;

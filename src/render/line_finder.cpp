@@ -31,9 +31,9 @@ TileLines LineFinder::search(const Tile& tile) {
     smoothing_.begin(tile);
     trace_lattice(tile);
     if (faces_ != nullptr) map_faces(tile);
+    if (ridges_ != nullptr) keep_for_ridges(tile);
     find_lines();
     if (specular_) add_specular();
-    if (ridges_) add_ridges();
     if (front_) put_pixels(tile);
     found_.strokes = strokes_;  // no larger than they are
     return std::move(found_);
@@ -184,6 +184,12 @@ void LineFinder::copy_to_grid(std::size_t block, const T* from, T* plane) const 
         from += place.across;
         to += grid_.width;
     }
+}
+
+void LineFinder::keep_for_ridges(const Tile& tile) {
+    const Timer timer(stats_.lines_ms);
+    const Timer phase(stats_.ridges_ms);
+    ridges_->keep(tile, {grid_, blocks_, hits_, normals_, saw_anything_});
 }
 
 void LineFinder::shade(std::size_t first, std::size_t count) {
@@ -389,19 +395,6 @@ void LineFinder::add_specular() {
     segments_.clear();
     specular_->search(suspects_, crossings_, segments_);
     keep();
-}
-
-/// The colours of a ridge's two sides are alike: smoothing has nothing to do there.
-void LineFinder::add_ridges() {
-    const Timer timer(stats_.lines_ms);
-    const Timer phase(stats_.ridges_ms);
-    segments_.clear();
-    ridges_->search({grid_, blocks_, hits_, normals_}, segments_);
-    for (Segment& segment : segments_) edges_.apply_distance(segment);
-    if (keeps_segments_) {
-        found_.segments.insert(found_.segments.end(), segments_.begin(), segments_.end());
-    }
-    for (const Segment& segment : segments_) keep_stroke(segment);
 }
 
 /// Between balls and between meshes by computing, between others by asking for samples.

@@ -29,13 +29,14 @@ namespace ink {
 /// near the scene.
 class LineFinder {
   public:
-    /// `faces`: where to put what lines between faces are drawn from; null if there are none.
-    LineFinder(const Edges& edges, FaceMap* faces)
-        : LineFinder(edges, *edges.pipeline.frame, true, faces) {}
+    /// `faces`: where to put what lines between faces are drawn from; `ridges`: what keeps the
+    /// samples that ridges are found from. Null if there are none.
+    explicit LineFinder(const Edges& edges, FaceMap* faces = nullptr, RidgeSearch* ridges = nullptr)
+        : LineFinder(edges, *edges.pipeline.frame, true, faces, ridges) {}
 
     /// On other surfaces than the nearest ones: what lies behind them is not shaded.
     LineFinder(const Edges& edges, const FrameTracer& behind)
-        : LineFinder(edges, behind, false, nullptr) {}
+        : LineFinder(edges, behind, false, nullptr, nullptr) {}
 
     /// Traces the lattice, detects, locates and connects; shades the tile's pixels on the way.
     TileLines search(const Tile& tile);
@@ -61,7 +62,7 @@ class LineFinder {
 
     RenderStats stats() const {
         RenderStats result = stats_;
-        result.rays = sampler_.rays() + (ridges_ ? ridges_->rays() : 0);
+        result.rays = sampler_.rays();
         if (specular_) {
             result.rays += specular_->rays();
             result.crossings += specular_->crossings();
@@ -70,12 +71,14 @@ class LineFinder {
     }
 
   private:
-    LineFinder(const Edges& edges, const FrameTracer& frame, bool front, FaceMap* faces)
+    LineFinder(const Edges& edges, const FrameTracer& frame, bool front, FaceMap* faces,
+               RidgeSearch* ridges)
         : edges_(edges),
           front_(front),
           ids_only_(front && edges.balls_only),
           faces_(faces),
           faces_end_(faces != nullptr && !edges.outlines_cover_faces()),
+          ridges_(ridges),
           sampler_(frame, edges.pipeline.camera, edges.q),
           pixel_sampler_(frame, edges.pipeline.camera),
           locator_(edges.viewpoint, edges.locate,
@@ -105,9 +108,6 @@ class LineFinder {
           keeps_segments_(!front || edges.keeps_segments()),
           density_(edges.no_lines),
           direct_density_(edges.no_lines) {
-        if (front && edges.find_lines && edges.wanted.has(LineType::ridge) && !edges.balls_only) {
-            ridges_.emplace(edges.pipeline, edges.q);
-        }
         if (front && edges.pipeline.goes_on()) specular_.emplace(edges);
     }
 
@@ -119,6 +119,7 @@ class LineFinder {
     void fill_grid(std::size_t block);
     template <class T>
     void copy_to_grid(std::size_t block, const T* from, T* plane) const;
+    void keep_for_ridges(const Tile& tile);
     void shade(std::size_t first, std::size_t count);
     void put_pixels(const Tile& tile);
     void put_block(int x, int y);
@@ -133,7 +134,6 @@ class LineFinder {
     void smooth();
     void count(const InkStroke& stroke);
     void add_specular();
-    void add_ridges();
     void sample(std::span<const Vec2f> points, std::span<Sample> out);
     struct LatticeHit {
         const HitPacket* hits;
@@ -193,6 +193,7 @@ class LineFinder {
     bool saw_anything_ = false;
     FaceMap* faces_;
     bool faces_end_;  ///< lines between faces end where another line is in front
+    RidgeSearch* ridges_;
     Sampler sampler_;
     Sampler pixel_sampler_;
     Locator locator_;
@@ -201,7 +202,6 @@ class LineFinder {
     MeshLocator mesh_locator_;
     IdentifyFunction identify_;
     SurfaceFunction describe_;
-    std::optional<RidgeSearch> ridges_;
     std::optional<SpecularSearch> specular_;
     Connector connector_;
     SampleGrid grid_;

@@ -66,7 +66,7 @@ void mend(const Edges& edges, std::vector<std::unique_ptr<LineFinder>>& finders,
     const float width = edges.ink.styles[edges.style_of(LineType::self_occlusion, 0)].width_px;
     std::vector<FoldWorker> workers;
     for (std::unique_ptr<LineFinder>& finder : finders) {
-        if (!finder) finder = std::make_unique<LineFinder>(edges, nullptr);
+        if (!finder) finder = std::make_unique<LineFinder>(edges);
         workers.push_back({finder->more_samples(), [&](Vec2f low, Vec2f high) {
                                finder->enter({low.x, low.y, high.x, high.y});
                            }});

@@ -98,6 +98,8 @@ class WorkLoop {
         : threads_(threads), control_(control), items_(items) {}
 
     int threads() const { return threads_; }
+    /// There will be so many more.
+    void expect(std::size_t items) { items_ += items; }
     /// Calls `body(item, worker)` as parallel_for does. Throws Cancelled when told to stop.
     void run(std::size_t count,
              const std::function<void(std::size_t item, std::size_t worker)>& body);

@@ -5,7 +5,32 @@
 #include <numbers>
 #include <variant>
 
+#include "lines/short_ridges.h"
+
 namespace ink {
+
+namespace {
+
+/// Rows of cells that a thread searches at a time.
+constexpr int kBandRows = 16;
+
+int floor_of(int a, int b) { return a >= 0 ? a / b : -((b - 1 - a) / b); }
+int ceiling_of(int a, int b) { return -floor_of(-a, b); }
+
+int radius_of(const Pipeline& pipeline, int per_pixel) {
+    return std::max(2,
+                    static_cast<int>(std::lround(pipeline.settings.ridge_scale_px() * per_pixel)));
+}
+
+/// Nodes two pixels apart, or fewer lattice points if the neighbourhood would be less than four
+/// nodes in radius; there are four in a pixel at most.
+int step_of(int radius, int per_pixel) {
+    int step = 2 * per_pixel;
+    while (step > 1 && radius < 4 * step && step > per_pixel / 2) step /= 2;
+    return step;
+}
+
+}  // namespace
 
 RidgeSettings ridge_settings(const Settings& settings) {
     // Degrees for each hundredth of the picture's height.
@@ -14,13 +39,22 @@ RidgeSettings ridge_settings(const Settings& settings) {
     return {static_cast<float>(turn), static_cast<float>(2.0 * turn)};
 }
 
-RidgeSearch::RidgeSearch(const Pipeline& pipeline, int per_pixel)
+RidgeSearch::RidgeSearch(const Pipeline& pipeline, int per_pixel, const Tile& area)
     : pipeline_(pipeline),
-      radius_(std::clamp(
-          static_cast<int>(std::lround(pipeline.settings.ridge_scale_px() * per_pixel)), 2, 64)),
-      apron_((radius_ + kBlockSide - 1) / kBlockSide * kBlockSide),
-      pattern_(radius_, 1.0F / static_cast<float>(per_pixel)),
-      sampler_(*pipeline.frame, pipeline.camera, per_pixel) {
+      per_pixel_(per_pixel),
+      step_(step_of(radius_of(pipeline, per_pixel), per_pixel)),
+      pattern_(std::clamp((radius_of(pipeline, per_pixel) + step_ / 2) / step_, 2, 48),
+               static_cast<float>(step_) / static_cast<float>(per_pixel)),
+      apron_(static_cast<int>(pattern_.half_widths().size()) - 1),
+      x0_(floor_of(area.x0 * per_pixel, step_) - apron_),
+      y0_(floor_of(area.y0 * per_pixel, step_) - apron_),
+      grid_(ceiling_of(area.x1 * per_pixel, step_) + apron_ + 1 - x0_,
+            ceiling_of(area.y1 * per_pixel, step_) + apron_ + 1 - y0_,
+            {(static_cast<float>(x0_ * step_) + 0.5F) / static_cast<float>(per_pixel),
+             (static_cast<float>(y0_ * step_) + 0.5F) / static_cast<float>(per_pixel)},
+            static_cast<float>(step_) / static_cast<float>(per_pixel)),
+      kept_(nodes_of(area)) {
+    cut_rim();
     const auto& objects = pipeline.scene.objects();
     for (std::uint32_t k = 0; k < objects.size(); ++k) {
         balls_.push_back(std::holds_alternative<Spheres>(objects[k].shape) &&
@@ -29,31 +63,46 @@ RidgeSearch::RidgeSearch(const Pipeline& pipeline, int per_pixel)
     has_balls_ = std::ranges::find(balls_, true) != balls_.end();
 }
 
-void RidgeSearch::search(const LatticeView& lattice, std::vector<Segment>& segments) {
-    lay_grid(lattice.grid);
-    copy(lattice);
-    trace_around(lattice.grid);
-    find_ridges(grid_, apron_, pattern_, ridge_settings(pipeline_.settings), segments);
+/// Those on lattice points of the tile.
+RidgeSearch::Nodes RidgeSearch::nodes_of(const Tile& pixels) const {
+    const auto node = [&](int pixel) { return ceiling_of(pixel * per_pixel_, step_); };
+    return {node(pixels.x0) - x0_, node(pixels.y0) - y0_, node(pixels.x1) - x0_,
+            node(pixels.y1) - y0_};
 }
 
-void RidgeSearch::lay_grid(const SampleGrid& lattice) {
-    grid_.x0 = lattice.x0 - apron_;
-    grid_.y0 = lattice.y0 - apron_;
-    grid_.spacing = lattice.spacing;
-    grid_.resize(lattice.width + 2 * apron_, lattice.height + 2 * apron_);
-    std::ranges::fill(grid_.id, kBackground);
+/// What lies around the tiles, in pieces that do not depend on them.
+void RidgeSearch::cut_rim() {
+    constexpr int kLength = 32;
+    const auto cut = [&](const Nodes& all) {
+        for (int y = all.y0; y < all.y1; y += kLength) {
+            for (int x = all.x0; x < all.x1; x += kLength) {
+                strips_.push_back(
+                    {x, y, std::min(x + kLength, all.x1), std::min(y + kLength, all.y1)});
+            }
+        }
+    };
+    cut({0, 0, grid_.width, kept_.y0});
+    cut({0, kept_.y1, grid_.width, grid_.height});
+    cut({0, kept_.y0, kept_.x0, kept_.y1});
+    cut({kept_.x1, kept_.y0, grid_.width, kept_.y1});
 }
 
-/// What the tile's lattice saw goes to the middle of the grid.
-void RidgeSearch::copy(const LatticeView& lattice) {
+void RidgeSearch::keep(const Tile& tile, const LatticeView& lattice) {
     const SampleGrid& from = lattice.grid;
+    const Nodes nodes = nodes_of(tile);
+    const auto first_column = static_cast<std::size_t>((x0_ + nodes.x0) * step_ - from.x0);
+    const auto step = static_cast<std::size_t>(step_);
+    const auto count = static_cast<std::size_t>(std::max(nodes.x1 - nodes.x0, 0));
     const auto copy_plane = [&](const auto& plane, auto& to) {
-        for (int j = 0; j < from.height; ++j) {
-            std::copy_n(plane.data() + from.index(0, j), from.width,
-                        to.data() + grid_.index(apron_, j + apron_));
+        for (int j = nodes.y0; j < nodes.y1; ++j) {
+            const auto* source =
+                plane.data() + from.index(0, (y0_ + j) * step_ - from.y0) + first_column;
+            auto* target = to.data() + grid_.index(nodes.x0, j);
+            for (std::size_t i = 0; i < count; ++i) target[i] = source[i * step];
         }
     };
     copy_plane(from.id, grid_.id);
+    if (!lattice.saw_anything) return;
     copy_plane(from.px, grid_.px);
     copy_plane(from.py, grid_.py);
     copy_plane(from.pz, grid_.pz);
@@ -61,16 +110,23 @@ void RidgeSearch::copy(const LatticeView& lattice) {
     copy_plane(from.ny, grid_.ny);
     copy_plane(from.nz, grid_.nz);
     copy_plane(from.t, grid_.t);
-    const bool other_normals = pipeline_.shader.has_line_normals();
-    if (!has_balls_ && !other_normals) return;
+    if (has_balls_ || pipeline_.shader.has_line_normals()) amend(nodes, lattice);
+}
+
+/// Takes out balls, whose view-dependent curvature grows all the way to their outlines, and puts in
+/// shading normals where the lattice has others.
+void RidgeSearch::amend(const Nodes& nodes, const LatticeView& lattice) {
     for (std::size_t k = 0; k < lattice.blocks.size(); ++k) {
         const Block& block = lattice.blocks[k];
         for (int lane = 0; lane < kLanes; ++lane) {
-            const int i = block.column(lane);
-            const int j = block.row(lane);
+            const int x = block.x + block.column(lane);
+            const int y = block.y + block.row(lane);
             const std::uint32_t object = lattice.hits[k].object[lane];
-            if (i >= block.columns || j >= block.rows || object == kNoObject) continue;
-            const std::size_t n = grid_.index(block.x - grid_.x0 + i, block.y - grid_.y0 + j);
+            if (object == kNoObject || x % step_ != 0 || y % step_ != 0) continue;
+            const int i = x / step_ - x0_;
+            const int j = y / step_ - y0_;
+            if (i < nodes.x0 || i >= nodes.x1 || j < nodes.y0 || j >= nodes.y1) continue;
+            const std::size_t n = grid_.index(i, j);
             if (balls_[object]) grid_.id[n] = kBackground;
             grid_.nx[n] = lattice.normals[k].x[lane];
             grid_.ny[n] = lattice.normals[k].y[lane];
@@ -79,47 +135,114 @@ void RidgeSearch::copy(const LatticeView& lattice) {
     }
 }
 
-void RidgeSearch::trace_around(const SampleGrid& lattice) {
-    const auto is_known = [&](int i, int size) {
-        return i >= apron_ && i + kBlockSide <= apron_ + size;
-    };
-    blocks_.clear();
-    for (int j = 0; j < grid_.height; j += kBlockSide) {
-        for (int i = 0; i < grid_.width; i += kBlockSide) {
-            if (is_known(i, lattice.width) && is_known(j, lattice.height)) continue;
-            blocks_.push_back({grid_.x0 + i, grid_.y0 + j, std::min(kBlockSide, grid_.width - i),
-                               std::min(kBlockSide, grid_.height - j)});
+void RidgeSearch::trace(const Nodes& strip, Sampler& sampler) {
+    std::vector<Vec2f> points;
+    std::vector<std::size_t> nodes;
+    for (int j = strip.y0; j < strip.y1; ++j) {
+        for (int i = strip.x0; i < strip.x1; ++i) {
+            points.push_back(grid_.point(i, j));
+            nodes.push_back(grid_.index(i, j));
+            grid_.id[nodes.back()] = kBackground;
         }
     }
-    hits_.resize(blocks_.size());
-    sampler_.trace_blocks(blocks_, {}, hits_);
-    for (std::size_t k = 0; k < blocks_.size(); ++k) keep(blocks_[k], k);
-}
-
-void RidgeSearch::keep(const Block& block, std::size_t k) {
-    const HitPacket& hits = hits_[k];
-    const RayPacket& rays = sampler_.packets()[k];
+    const ScreenBox box{points.front().x, points.front().y, points.back().x, points.back().y};
+    sampler.enter(box);
+    if (!sampler.reaches(box)) return;
+    std::vector<HitPacket> hits;
+    sampler.trace_points(points, hits);
     NormalPacket normals;
     Lanes<GeometryId> ids;
-    pipeline_.shader.smooth(hits, normals);
-    pipeline_.ids.resolve(hits, ids);
-    for (int lane = 0; lane < kLanes; ++lane) {
-        const int i = lane % kBlockSide;
-        const int j = lane / kBlockSide;
-        if (i >= block.columns || j >= block.rows || hits.object[lane] == kNoObject) continue;
-        // The view-dependent curvature of a ball grows all the way to its outline.
-        if (balls_[hits.object[lane]]) continue;
-        const std::size_t n = grid_.index(block.x - grid_.x0 + i, block.y - grid_.y0 + j);
-        const float t = hits.t[lane];
-        grid_.id[n] = ids[lane];
-        grid_.px[n] = rays.origin_x[lane] + t * rays.dir_x[lane];
-        grid_.py[n] = rays.origin_y[lane] + t * rays.dir_y[lane];
-        grid_.pz[n] = rays.origin_z[lane] + t * rays.dir_z[lane];
-        grid_.nx[n] = normals.x[lane];
-        grid_.ny[n] = normals.y[lane];
-        grid_.nz[n] = normals.z[lane];
-        grid_.t[n] = t;
+    for (std::size_t n = 0; n < points.size(); ++n) {
+        const std::size_t k = n / kLanes;
+        const auto lane = static_cast<int>(n % kLanes);
+        if (lane == 0) {
+            pipeline_.shader.smooth(hits[k], normals);
+            pipeline_.ids.resolve(hits[k], ids);
+        }
+        const std::uint32_t object = hits[k].object[lane];
+        if (object == kNoObject || balls_[object]) continue;
+        put(nodes[sampler.order()[n]], sampler.packets()[k], hits[k], normals, lane);
+        grid_.id[nodes[sampler.order()[n]]] = ids[lane];
     }
+}
+
+void RidgeSearch::put(std::size_t node, const RayPacket& rays, const HitPacket& hits,
+                      const NormalPacket& normals, int lane) {
+    const float t = hits.t[lane];
+    grid_.px[node] = rays.origin_x[lane] + t * rays.dir_x[lane];
+    grid_.py[node] = rays.origin_y[lane] + t * rays.dir_y[lane];
+    grid_.pz[node] = rays.origin_z[lane] + t * rays.dir_z[lane];
+    grid_.nx[node] = normals.x[lane];
+    grid_.ny[node] = normals.y[lane];
+    grid_.nz[node] = normals.z[lane];
+    grid_.t[node] = t;
+}
+
+std::size_t RidgeSearch::bands() const {
+    const int cells = grid_.height - 2 * apron_ - 1;
+    return static_cast<std::size_t>(std::max(0, (cells + kBandRows - 1) / kBandRows));
+}
+
+void RidgeSearch::find(WorkLoop& loop, RenderStats& stats) {
+    struct Worker {
+        Worker(const RidgeSearch& search)
+            : sampler(*search.pipeline_.frame, search.pipeline_.camera),
+              field(search.grid_, search.pattern_, ridge_settings(search.pipeline_.settings)) {}
+        Sampler sampler;
+        RidgeField field;
+        RenderStats stats;
+    };
+    std::vector<std::unique_ptr<Worker>> workers(static_cast<std::size_t>(loop.threads()));
+    const auto worker_of = [&](std::size_t k) -> Worker& {
+        if (!workers[k]) workers[k] = std::make_unique<Worker>(*this);
+        return *workers[k];
+    };
+    loop.run(strips_.size(), [&](std::size_t k, std::size_t thread) {
+        Worker& worker = worker_of(thread);
+        const Timer timer(worker.stats.lines_ms);
+        const Timer phase(worker.stats.ridges_ms);
+        trace(strips_[k], worker.sampler);
+    });
+    found_.resize(bands());
+    loop.run(bands(), [&](std::size_t k, std::size_t thread) {
+        Worker& worker = worker_of(thread);
+        const Timer timer(worker.stats.lines_ms);
+        const Timer phase(worker.stats.ridges_ms);
+        const int first = apron_ + static_cast<int>(k) * kBandRows;
+        const int last = std::min(first + kBandRows, grid_.height - apron_ - 1);
+        worker.field.find(first, last, found_[k]);
+    });
+    for (const auto& worker : workers) {
+        if (!worker) continue;
+        worker->stats.rays = worker->sampler.rays();
+        stats += worker->stats;
+    }
+}
+
+std::vector<Segment> RidgeSearch::take(const LineMask& others) {
+    std::vector<RidgePiece> pieces;
+    for (const std::vector<RidgePiece>& band : found_) {
+        for (const RidgePiece& piece : band) {
+            if (!others.covers((piece.a + piece.b) * 0.5F)) pieces.push_back(piece);
+        }
+    }
+    drop_short_ridges(
+        pieces, grid_.width,
+        static_cast<float>(radius_of(pipeline_, per_pixel_)) / static_cast<float>(per_pixel_));
+    std::vector<Segment> segments(pieces.size());
+    for (std::size_t k = 0; k < pieces.size(); ++k) {
+        const RidgePiece& piece = pieces[k];
+        Segment& segment = segments[k];
+        segment.a = piece.a;
+        segment.b = piece.b;
+        segment.type = segment.type_at_b = LineType::ridge;
+        segment.strength = piece.strength;
+        segment.t = grid_.t[piece.node];
+        segment.left = segment.right = segment.owner = grid_.id[piece.node];
+        segment.left_at_b = segment.right_at_b = segment.owner;
+        segment.spans_cell = true;
+    }
+    return segments;
 }
 
 }  // namespace ink

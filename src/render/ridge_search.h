@@ -1,12 +1,17 @@
 #pragma once
 
 #include <cstddef>
+#include <memory>
 #include <span>
 #include <vector>
 
+#include "lines/ridge_field.h"
+#include "lines/ridge_grid.h"
 #include "lines/ridges.h"
 #include "lines/segment.h"
+#include "render/line_mask.h"
 #include "render/pipeline.h"
+#include "render/tiles.h"
 #include "sampling/sampler.h"
 #include "sampling/samples.h"
 
@@ -21,35 +26,55 @@ struct LatticeView {
     std::span<const Block> blocks;
     std::span<const HitPacket> hits;
     std::span<const NormalPacket> normals;
+    bool saw_anything;  ///< whether any ray hit
 };
 
-/// Finds the apparent ridges of one tile after another. They need the normals of a wide
-/// neighbourhood, so what lies around the tile is traced beside what its lattice saw.
+/// Finds the apparent ridges of a picture. They need the normals of a wide neighbourhood, so the
+/// tiles keep what their lattices saw at the nodes of a grid that is as fine as the neighbourhood
+/// asks for; once all are done, ridges are found in it. Only nodes around the picture need rays of
+/// their own.
 class RidgeSearch {
   public:
-    /// `per_pixel` lattice points along a pixel's side.
-    RidgeSearch(const Pipeline& pipeline, int per_pixel);
+    /// `per_pixel` lattice points along a pixel's side; `area` is what all tiles together cover.
+    RidgeSearch(const Pipeline& pipeline, int per_pixel, const Tile& area);
 
-    void search(const LatticeView& lattice, std::vector<Segment>& segments);
+    /// Threads may keep different tiles at the same time.
+    void keep(const Tile& tile, const LatticeView& lattice);
 
-    std::size_t rays() const { return sampler_.rays(); }
+    /// Items of work in `find`.
+    std::size_t items() const { return strips_.size() + bands(); }
+    /// After all tiles.
+    void find(WorkLoop& loop, RenderStats& stats);
+    /// What was found, but for pieces so near to other lines that they would touch them, and for
+    /// what is shorter in all than the neighbourhood's radius: more often than not it is noise of
+    /// a mesh.
+    std::vector<Segment> take(const LineMask& others);
 
   private:
-    void lay_grid(const SampleGrid& lattice);
-    void copy(const LatticeView& lattice);
-    void trace_around(const SampleGrid& lattice);
-    void keep(const Block& block, std::size_t k);
+    /// Nodes [x0, x1) x [y0, y1) of the grid.
+    using Nodes = Tile;
+
+    Nodes nodes_of(const Tile& pixels) const;
+    std::size_t bands() const;
+    void cut_rim();
+    void amend(const Nodes& nodes, const LatticeView& lattice);
+    void trace(const Nodes& strip, Sampler& sampler);
+    void put(std::size_t node, const RayPacket& rays, const HitPacket& hits,
+             const NormalPacket& normals, int lane);
 
     const Pipeline& pipeline_;
+    int per_pixel_;
     int radius_;  ///< of a ridge's neighbourhood, lattice points
-    int apron_;   ///< the same, up to whole blocks
+    int step_;    ///< lattice points from node to node
     RidgePattern pattern_;
-    std::vector<bool> balls_;  ///< objects without ridges: each ID is a ball
+    int apron_;    ///< nodes
+    int x0_, y0_;  ///< lattice point of node (0, 0), in steps
+    RidgeGrid grid_;
+    Nodes kept_;                 ///< by tiles
+    std::vector<Nodes> strips_;  ///< the others
+    std::vector<bool> balls_;    ///< objects without ridges: each ID is a ball
     bool has_balls_;
-    Sampler sampler_;
-    SampleGrid grid_;
-    std::vector<Block> blocks_;
-    std::vector<HitPacket> hits_;
+    std::vector<std::vector<RidgePiece>> found_;  ///< band by band
 };
 
 }  // namespace ink

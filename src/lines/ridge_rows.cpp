@@ -1,0 +1,223 @@
+#include "lines/ridge_rows.h"
+
+#include <algorithm>
+#include <array>
+
+#include "base/lanes.h"
+
+// Everything between the two namespace macros is built once for each instruction set.
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "lines/ridge_rows.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace ink::HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+using Floats = hn::CappedTag<float, kLanes>;
+using Ids = hn::Rebind<GeometryId, Floats>;
+constexpr Floats kFloats;
+constexpr Ids kIds;
+using Number = hn::Vec<Floats>;
+constexpr auto kStep = static_cast<int>(hn::MaxLanes(Floats()));
+
+HWY_INLINE Number load(const float* from) { return hn::LoadU(kFloats, from); }
+
+template <class Tag, class Mask>
+HWY_INLINE NodeBits bits_of(Tag tag, Mask mask) {
+    std::uint8_t bytes[8] = {};
+    hn::StoreMaskBits(tag, mask, bytes);
+    return static_cast<NodeBits>(bytes[0]) | static_cast<NodeBits>(bytes[1]) << 8U;
+}
+
+HWY_INLINE Number dot(Number ax, Number ay, Number az, Number bx, Number by, Number bz) {
+    return hn::Add(hn::Add(hn::Mul(ax, bx), hn::Mul(ay, by)), hn::Mul(az, bz));
+}
+
+HWY_INLINE NodeBits link_some(const RidgeGrid& grid, std::size_t a, std::size_t b) {
+    constexpr float kLeastCosine = 0.5F;
+    constexpr float kChordSine = 0.6F;
+    const auto id_a = hn::LoadU(kIds, grid.id.data() + a);
+    const auto id_b = hn::LoadU(kIds, grid.id.data() + b);
+    const NodeBits other = bits_of(kIds, hn::Ne(id_a, id_b));
+    const NodeBits hit = bits_of(kIds, hn::Ne(id_a, hn::Set(kIds, kBackground)));
+    const NodeBits alike = hit & ~other;
+    if (alike == 0) return 0;
+    const auto difference = [&](const auto& plane) HWY_ATTR {
+        return hn::Sub(load(plane.data() + b), load(plane.data() + a));
+    };
+    const Number cx = difference(grid.px);
+    const Number cy = difference(grid.py);
+    const Number cz = difference(grid.pz);
+    const Number ax = load(grid.nx.data() + a);
+    const Number ay = load(grid.ny.data() + a);
+    const Number az = load(grid.nz.data() + a);
+    const Number bx = load(grid.nx.data() + b);
+    const Number by = load(grid.ny.data() + b);
+    const Number bz = load(grid.nz.data() + b);
+    const Number mx = hn::Add(ax, bx);
+    const Number my = hn::Add(ay, by);
+    const Number mz = hn::Add(az, bz);
+    const Number along = dot(cx, cy, cz, mx, my, mz);
+    const Number most =
+        hn::Mul(hn::Mul(hn::Set(kFloats, kChordSine * kChordSine), dot(cx, cy, cz, cx, cy, cz)),
+                dot(mx, my, mz, mx, my, mz));
+    const auto flat = hn::Le(hn::Mul(along, along), most);
+    const auto straight = hn::Gt(dot(ax, ay, az, bx, by, bz), hn::Set(kFloats, kLeastCosine));
+    return alike & bits_of(kFloats, hn::And(flat, straight));
+}
+
+/// Fills words with what `some(i)` says of the nodes from i on.
+template <class Some>
+HWY_INLINE void fill_words(int count, NodeBits* words, const Some& some) {
+    for (int first = 0; first < count; first += kNodesInWord) {
+        NodeBits word = 0;
+        const int end = std::min(count - first, kNodesInWord);
+        for (int i = 0; i < end; i += kStep) word |= some(first + i) << i;
+        if (end < kNodesInWord) word &= (NodeBits{1} << end) - 1;
+        *words++ = word;
+    }
+}
+
+void link_nodes(const RidgeGrid& grid, std::size_t a, std::size_t b, int count, NodeBits* links) {
+    fill_words(count, links, [&](int i) HWY_ATTR {
+        const auto at = static_cast<std::size_t>(i);
+        return link_some(grid, a + at, b + at);
+    });
+}
+
+/// Sums for the derivatives of one component of the normals, by whether a derivative changes its
+/// sign when x does, and when y does. Of points that mirror each other, the normals are added up
+/// before they are weighed.
+class Derivatives {
+  public:
+    HWY_INLINE explicit Derivatives(const float* normals)
+        : normals_(normals), centre_(load(normals)) {}
+
+    HWY_INLINE void add_on_x(const MirroredPoints& points) {
+        const Number a = load(normals_ + points.offsets[0]);
+        const Number b = load(normals_ - points.offsets[0]);
+        add_odd_in_x(points, hn::Sub(a, b));
+        add_even(points, even(a, b));
+    }
+    HWY_INLINE void add_on_y(const MirroredPoints& points) {
+        const Number a = load(normals_ + points.offsets[0]);
+        const Number b = load(normals_ - points.offsets[0]);
+        add_odd_in_y(points, hn::Sub(a, b));
+        add_even(points, even(a, b));
+    }
+    HWY_INLINE void add_off_axes(const MirroredPoints& points) {
+        const Number a = load(normals_ + points.offsets[0]);
+        const Number b = load(normals_ + points.offsets[1]);
+        const Number c = load(normals_ - points.offsets[1]);
+        const Number d = load(normals_ - points.offsets[0]);
+        // With x on one side, and on the other.
+        const Number right = even(a, c);
+        const Number left = even(b, d);
+        const Number right_odd = hn::Sub(a, c);
+        const Number left_odd = hn::Sub(b, d);
+        add_odd_in_x(points, hn::Sub(right, left));
+        add_odd_in_y(points, hn::Add(right_odd, left_odd));
+        add_even(points, hn::Add(right, left));
+        add(xy_, hn::Sub(right_odd, left_odd), points.weights[3]);
+    }
+    HWY_INLINE void store(DerivativeRows& rows, std::size_t component, int i) const {
+        const std::array<const Number*, RidgeEstimator::kDerivatives> sums{
+            &x_, &y_, &xx_, &xy_, &yy_, &xxx_, &xxy_, &xyy_, &yyy_};
+        for (std::size_t k = 0; k < sums.size(); ++k) {
+            hn::Store(*sums[k], kFloats, rows[k][component].data() + i);
+        }
+    }
+
+  private:
+    HWY_INLINE Number even(Number a, Number b) const {
+        return hn::Add(hn::Sub(a, centre_), hn::Sub(b, centre_));
+    }
+    static HWY_INLINE void add(Number& sum, Number value, float weight) {
+        sum = hn::Add(sum, hn::Mul(value, hn::Set(kFloats, weight)));
+    }
+    HWY_INLINE void add_odd_in_x(const MirroredPoints& points, Number value) {
+        add(x_, value, points.weights[0]);
+        add(xxx_, value, points.weights[5]);
+        add(xyy_, value, points.weights[7]);
+    }
+    HWY_INLINE void add_odd_in_y(const MirroredPoints& points, Number value) {
+        add(y_, value, points.weights[1]);
+        add(xxy_, value, points.weights[6]);
+        add(yyy_, value, points.weights[8]);
+    }
+    HWY_INLINE void add_even(const MirroredPoints& points, Number value) {
+        add(xx_, value, points.weights[2]);
+        add(yy_, value, points.weights[4]);
+    }
+
+    const float* normals_;
+    Number centre_;
+    Number x_ = hn::Zero(kFloats), y_ = x_, xx_ = x_, xy_ = x_, yy_ = x_;
+    Number xxx_ = x_, xxy_ = x_, xyy_ = x_, yyy_ = x_;
+};
+
+void differentiate(const RidgeGrid& grid, std::size_t first, const MirroredPattern& pattern,
+                   DerivativeRows& rows) {
+    const std::array normals{grid.nx.data() + first, grid.ny.data() + first,
+                             grid.nz.data() + first};
+    for (std::size_t k = 0; k < normals.size(); ++k) {
+        for (int i = 0; i < kLanes; i += kStep) {
+            Derivatives derivatives(normals[k] + i);
+            for (const MirroredPoints& points : pattern.on_x) derivatives.add_on_x(points);
+            for (const MirroredPoints& points : pattern.on_y) derivatives.add_on_y(points);
+            for (const MirroredPoints& points : pattern.off_axes) derivatives.add_off_axes(points);
+            derivatives.store(rows, k, i);
+        }
+    }
+}
+
+void cross_rows(const RidgeRow& a, const RidgeRow& b, int count, NodeBits* crossed) {
+    const Number zero = hn::Zero(kFloats);
+    fill_words(count, crossed, [&](int i) HWY_ATTR {
+        const auto strong =
+            hn::And(hn::Gt(load(a.strength + i), zero), hn::Gt(load(b.strength + i), zero));
+        const NodeBits both = bits_of(kFloats, strong);
+        if (both == 0) return NodeBits{0};
+        const Number turn = hn::Add(hn::Mul(load(a.along_x + i), load(b.along_x + i)),
+                                    hn::Mul(load(a.along_y + i), load(b.along_y + i)));
+        const Number g = load(a.slope + i);
+        const Number opposite = load(b.slope + i);
+        const Number h = hn::IfThenElse(hn::Lt(turn, zero), hn::Neg(opposite), opposite);
+        // Where the slope is zero between the two, times something above zero.
+        const Number bend =
+            hn::Add(hn::Mul(load(a.bend + i), hn::Abs(h)), hn::Mul(load(b.bend + i), hn::Abs(g)));
+        return both & bits_of(kFloats, hn::Lt(bend, zero)) &
+               (bits_of(kFloats, hn::Lt(g, zero)) ^ bits_of(kFloats, hn::Lt(h, zero)));
+    });
+}
+
+}  // namespace ink::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+
+namespace ink {
+
+HWY_EXPORT(link_nodes);
+HWY_EXPORT(differentiate);
+HWY_EXPORT(cross_rows);
+
+void link_nodes(const RidgeGrid& grid, std::size_t a, std::size_t b, int count, NodeBits* links) {
+    HWY_DYNAMIC_DISPATCH(link_nodes)(grid, a, b, count, links);
+}
+
+void differentiate(const RidgeGrid& grid, std::size_t first, const MirroredPattern& pattern,
+                   DerivativeRows& derivatives) {
+    HWY_DYNAMIC_DISPATCH(differentiate)(grid, first, pattern, derivatives);
+}
+
+void cross_rows(const RidgeRow& a, const RidgeRow& b, int count, NodeBits* crossed) {
+    HWY_DYNAMIC_DISPATCH(cross_rows)(a, b, count, crossed);
+}
+
+}  // namespace ink
+
+#endif

@@ -1,0 +1,13 @@
+#pragma once
+
+#include <vector>
+
+#include "lines/ridge_field.h"
+
+namespace ink {
+
+/// Drops ridges whose pieces that hang together are shorter in all than `least` pixels. Pieces
+/// come, and stay, row by row and from left to right, of a grid with rows of `width` nodes.
+void drop_short_ridges(std::vector<RidgePiece>& pieces, int width, float least);
+
+}  // namespace ink
