@@ -109,7 +109,6 @@ class Seen {
         return {0, 0, static_cast<float>(size_.width), static_cast<float>(size_.height)};
     }
 
-  private:
     std::vector<RayPacket> rays(const std::vector<PointPacket>& points) const {
         std::vector<RayPacket> rays(points.size());
         for (std::size_t k = 0; k < points.size(); ++k) {
@@ -118,6 +117,7 @@ class Seen {
         return rays;
     }
 
+  private:
     Scene scene_;
     Clusters clusters_;
     Camera camera_;
@@ -345,6 +345,25 @@ TEST(ScreenTracer, GivesAPointOneAnswerWhateverItsCompanyAndArea) {
                              points[k].y[kLanes - 1]};
         const HitPacket alone = seen.trace({points[k]}, area)[0];
         for (int i = 0; i < kLanes; ++i) expect_same_bits(alone, i, all[k], i);
+    }
+}
+
+TEST(ScreenTracer, GivesAPointOneAnswerWhereverItHasBeenBefore) {
+    std::mt19937 random(21);
+    std::vector<Sphere> dust;  // in more clusters than are kept from area to area
+    for (int i = 0; i < 40000; ++i) dust.push_back({uniform_point(random), 0.008F});
+    const Seen seen({sphere_object(std::move(dust))}, {}, {256, 256});
+    const auto points = seen.pixels();
+    const auto travelled = seen.tile_tracer();
+    for (int n = 0; n < 600; ++n) {
+        const std::size_t k = random() % points.size();
+        const std::vector<PointPacket> one{points[k]};
+        std::vector<HitPacket> hits(1);
+        travelled->enter(
+            {points[k].x[0], points[k].y[0], points[k].x[kLanes - 1], points[k].y[kLanes - 1]});
+        travelled->intersect(one, seen.rays(one), hits);
+        const HitPacket fresh = seen.trace(one)[0];
+        for (int i = 0; i < kLanes; ++i) expect_same_bits(hits[0], i, fresh, i);
     }
 }
 

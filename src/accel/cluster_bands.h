@@ -41,8 +41,9 @@ class ClusterBands {
         int count = 1;
         int band(float at) const {
             const float place = (at - from) * scale;
-            return place > 0.0F ? static_cast<int>(std::min(place, static_cast<float>(count - 1)))
-                                : 0;
+            const float last = static_cast<float>(count - 1);
+            const float positive = place > 0.0F ? place : 0.0F;  // of no number, zero
+            return static_cast<int>(positive < last ? positive : last);
         }
     };
     /// Which of the picture's cells anything reaches into, a bit a cell.

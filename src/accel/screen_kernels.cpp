@@ -112,17 +112,17 @@ void intersect_front(const Basis& basis, const ScreenPacket* packets, std::uint3
 
 // ---- Rasters ----
 
-/// Groups of cells that one primitive reaches into.
-struct Groups {
+/// Cells that one primitive reaches into.
+struct CellRange {
     int left, right, top, bottom;
 };
 
 /// Those of sixteen primitives.
-struct GroupLanes {
+struct CellRanges {
     Lanes<std::int32_t> left, right, top, bottom;
 
-    HWY_INLINE GroupLanes(const BoundsPacket& bounds, const FrontRaster& raster) {
-        const float scale = 1.0F / (kBlockSide * raster.side);
+    HWY_INLINE CellRanges(const BoundsPacket& bounds, const FrontRaster& raster) {
+        const float scale = 1.0F / raster.side;
         const auto put = [&](const Lanes<float>& at, float from, int count,
                              Lanes<std::int32_t>& to) {
             const auto last = set(static_cast<float>(count - 1));
@@ -138,33 +138,69 @@ struct GroupLanes {
         put(bounds.bottom, raster.top, raster.down, bottom);
     }
 
-    HWY_INLINE Groups of(int lane) const {
+    HWY_INLINE CellRange of(int lane) const {
         return {left[lane], right[lane], top[lane], bottom[lane]};
     }
 };
 
-/// Upper left corners of the cells of a group, and which of them bounds reach into, before all that
-/// they see.
-struct GroupCells {
+/// Calls `visit(column, row)` for the first cells of windows that cover the range, until it returns
+/// false.
+template <class Visit>
+HWY_INLINE void for_windows(const CellRange& cells, const Visit& visit) {
+    for (int row = cells.top; row <= cells.bottom; row += kBlockSide) {
+        for (int column = cells.left; column <= cells.right; column += kBlockSide) {
+            if (!visit(column, row)) return;
+        }
+    }
+}
+
+/// What the cells of a window are from its first one: right, down and in the raster's arrays.
+struct WindowCells {
+    Lanes<float> right, down;
+    Lanes<std::uint32_t> offset;
+
+    HWY_INLINE explicit WindowCells(const FrontRaster& raster) {
+        for (int i = 0; i < kLanes; ++i) {
+            right[i] = static_cast<float>(i % kBlockSide) * raster.side;
+            down[i] = static_cast<float>(i / kBlockSide) * raster.side;
+            offset[i] =
+                static_cast<std::uint32_t>(i / kBlockSide * raster.stride() + i % kBlockSide);
+        }
+    }
+};
+
+/// Rows of four side by side.
+template <class Tag>
+HWY_INLINE hn::Vec<Tag> load_rows(Tag tag, const float* first, int stride) {
+    constexpr auto kRows = static_cast<int>(hn::MaxLanes(Tag())) / kBlockSide;
+    if constexpr (kRows == 1) {
+        return hn::LoadU(tag, first);
+    } else {
+        constexpr hn::Half<Tag> kHalf;
+        return hn::Combine(tag, load_rows(kHalf, first + kRows / 2 * stride, stride),
+                           load_rows(kHalf, first, stride));
+    }
+}
+
+/// Upper left corners of the cells of a window, and which of them bounds reach into, before all
+/// that they see.
+struct ReachedCells {
     Vector left, top;
     Mask reached;
 
-    HWY_INLINE GroupCells(const Reach& reach, const FrontRaster& raster, int column, int row,
-                          int i) {
-        const float x = raster.left + static_cast<float>(column * kBlockSide) * raster.side;
-        const float y = raster.top + static_cast<float>(row * kBlockSide) * raster.side;
-        const auto lane = hn::Iota(kIntegers, i);
-        const auto in_row = hn::And(lane, hn::Set(kIntegers, kBlockSide - 1));
+    HWY_INLINE ReachedCells(const Reach& reach, const FrontRaster& raster, const WindowCells& cells,
+                            int column, int row, int i) {
+        left = hn::Add(set(raster.left + static_cast<float>(column) * raster.side),
+                       load(cells.right, i));
+        top = hn::Add(set(raster.top + static_cast<float>(row) * raster.side), load(cells.down, i));
         const auto side = set(raster.side);
-        left = hn::Add(set(x), hn::Mul(hn::ConvertTo(kFloats, in_row), side));
-        top = hn::Add(set(y), hn::Mul(hn::ConvertTo(kFloats, hn::ShiftRight<2>(lane)), side));
-        const float* farthest = raster.farthest + (row * raster.across + column) * kLanes;
         const auto across =
             hn::And(hn::Le(set(reach.left), hn::Add(left, side)), hn::Ge(set(reach.right), left));
         const auto down =
             hn::And(hn::Le(set(reach.top), hn::Add(top, side)), hn::Ge(set(reach.bottom), top));
-        const auto before = hn::Lt(set(reach.depth), hn::Load(kFloats, farthest + i));
-        reached = hn::And(hn::And(across, down), before);
+        const int first = (row + i / kBlockSide) * raster.stride() + column;
+        const auto farthest = load_rows(kFloats, raster.farthest + first, raster.stride());
+        reached = hn::And(hn::And(across, down), hn::Lt(set(reach.depth), farthest));
     }
 };
 
@@ -175,104 +211,103 @@ struct Pairs {
     static constexpr std::size_t kMost = 1024;
     std::array<Lanes<std::uint32_t>, kMost / kLanes + 2> list;  ///< cell * kLanes + lane
     std::size_t count = 0;
+    std::array<std::uint32_t, kMost + kLanes + 1> dirty;  ///< cells
+    std::size_t dirty_count = 0;
 
     HWY_INLINE bool full() const { return count > kMost; }
 
-    /// Lists the cells of a group.
+    /// Lists the cells of a window.
     template <class Test>
     HWY_INLINE void add(const Test& test, int lane, const Reach& reach, const FrontRaster& raster,
-                        int column, int row) {
-        const int group = row * raster.across + column;
+                        const WindowCells& cells, int column, int row) {
+        const auto first = static_cast<std::uint32_t>(row * raster.stride() + column);
         for (int i = 0; i < kLanes; i += kStep) {
-            const GroupCells cells(reach, raster, column, row, i);
+            const ReachedCells reached(reach, raster, cells, column, row, i);
             const Mask live =
-                test.may_cover(cells.reached, cells.left, cells.top, reach, raster.side);
-            const LaneBits found = bits(live);
-            raster.dirty[group] |= found << static_cast<unsigned>(i);
-            const auto first = static_cast<std::uint32_t>((group * kLanes + i) * kLanes + lane);
+                test.may_cover(reached.reached, reached.left, reached.top, reach, raster.side);
+            const auto at = hn::Add(load(cells.offset, i), hn::Set(kIndices, first));
             const auto all =
-                hn::Add(hn::ShiftLeft<4>(hn::Iota(kIndices, 0)), hn::Set(kIndices, first));
+                hn::Add(hn::ShiftLeft<4>(at), hn::Set(kIndices, static_cast<std::uint32_t>(lane)));
             const auto compressed = hn::Compress(all, hn::RebindMask(kIndices, live));
             hn::StoreU(compressed, kIndices, list[0].data() + count);
-            count += static_cast<std::size_t>(std::popcount(found));
+            count += static_cast<std::size_t>(std::popcount(bits(live)));
         }
     }
 
-    /// Tests what is listed.
+    /// Tests what is listed, and brings the farthest depths of its cells up to date.
     template <class Make>
     HWY_INLINE void test(const Make& make, const ScreenPacket* packets, std::uint32_t index,
                          const FrontRaster& raster) {
         const std::uint32_t* pairs = list[0].data();
         for (std::size_t k = 0; k < count; ++k) {
             const std::uint32_t lane = pairs[k] % kLanes;
+            const std::uint32_t cell = pairs[k] / kLanes;
+            dirty[dirty_count] = cell;
+            dirty_count += 1U - raster.dirty[cell];
+            raster.dirty[cell] = 1;
             const auto primitive = make(packets[index], static_cast<int>(lane));
-            primitive({packets, index * kLanes + lane},
-                      raster.fronts[raster.front_at[pairs[k] / kLanes]]);
+            primitive({packets, index * kLanes + lane}, raster.fronts[raster.front_at[cell]]);
         }
         count = 0;
-    }
-};
-
-/// Brings the farthest depths of cells up to date.
-HWY_INLINE void update_farthest(const FrontRaster& raster) {
-    for (int group = 0; group < raster.across * raster.down; ++group) {
-        for (LaneBits left = raster.dirty[group]; left != 0; left &= left - 1) {
-            const int cell = group * kLanes + std::countr_zero(left);
+        for (std::size_t k = 0; k < dirty_count; ++k) {
+            const std::uint32_t cell = dirty[k];
+            raster.dirty[cell] = 0;
             raster.farthest[cell] = most(raster.fronts[raster.front_at[cell]].depth);
         }
-        raster.dirty[group] = 0;
+        dirty_count = 0;
     }
-}
+};
 
 void intersect_raster(const Basis& basis, const ScreenPacket* packets, std::uint32_t index,
                       const FrontRaster& raster) {
     const ScreenPacket& packet = packets[index];
-    const float width = static_cast<float>(raster.across * kBlockSide) * raster.side;
-    const float height = static_cast<float>(raster.down * kBlockSide) * raster.side;
+    const float width = static_cast<float>(raster.across) * raster.side;
+    const float height = static_cast<float>(raster.down) * raster.side;
     const Window window{raster.left, raster.left + width, raster.top, raster.top + height,
                         kInfinity};
     const LaneBits all = overlap_lanes(packet.bounds, window);
     if (all == 0) return;
-    const GroupLanes all_groups(packet.bounds, raster);
+    const CellRanges ranges(packet.bounds, raster);
+    const WindowCells cells(raster);
     for_kind(basis, packet, [&](const auto& make) {
         Pairs pairs;
         for (LaneBits lanes = all; lanes != 0; lanes &= lanes - 1) {
             const int lane = std::countr_zero(lanes);
             const Reach reach(packet.bounds, lane);
-            const Groups groups = all_groups.of(lane);
             const auto primitive = make(packet, lane);
-            for (int row = groups.top; row <= groups.bottom; ++row) {
-                for (int column = groups.left; column <= groups.right; ++column) {
-                    pairs.add(primitive, lane, reach, raster, column, row);
-                    if (pairs.full()) pairs.test(make, packets, index, raster);
-                }
-            }
+            for_windows(ranges.of(lane), [&](int column, int row) {
+                pairs.add(primitive, lane, reach, raster, cells, column, row);
+                if (pairs.full()) pairs.test(make, packets, index, raster);
+                return true;
+            });
         }
         pairs.test(make, packets, index, raster);
     });
-    update_farthest(raster);
 }
 
 bool raster_matters(const BoundsPacket& bounds, int lane, const FrontRaster& raster) {
     const Reach reach(bounds, lane);
-    const Groups groups = GroupLanes(bounds, raster).of(lane);
-    for (int row = groups.top; row <= groups.bottom; ++row) {
-        for (int column = groups.left; column <= groups.right; ++column) {
-            for (int i = 0; i < kLanes; i += kStep) {
-                const GroupCells cells(reach, raster, column, row, i);
-                if (!hn::AllFalse(kFloats, cells.reached)) return true;
-            }
+    const WindowCells cells(raster);
+    bool any = false;
+    for_windows(CellRanges(bounds, raster).of(lane), [&](int column, int row) {
+        for (int i = 0; i < kLanes && !any; i += kStep) {
+            const ReachedCells reached(reach, raster, cells, column, row, i);
+            any = !hn::AllFalse(kFloats, reached.reached);
         }
-    }
-    return false;
+        return !any;
+    });
+    return any;
 }
 
 float raster_farthest(const FrontRaster& raster) {
     auto all = set(-kInfinity);
-    for (int k = 0; k < raster.across * raster.down * kLanes; k += kStep) {
-        all = hn::Max(all, hn::Load(kFloats, raster.farthest + k));
+    int k = 0;
+    for (; k + kStep <= raster.cells(); k += kStep) {
+        all = hn::Max(all, hn::LoadU(kFloats, raster.farthest + k));
     }
-    return hn::GetLane(hn::MaxOfLanes(kFloats, all));
+    float result = hn::GetLane(hn::MaxOfLanes(kFloats, all));
+    for (; k < raster.cells(); ++k) result = std::max(result, raster.farthest[k]);
+    return result;
 }
 
 // ---- Rays ----

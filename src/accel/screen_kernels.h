@@ -20,15 +20,21 @@ struct Front {
     void start(const Projection& projection, const PointPacket& points);
 };
 
-/// Fronts in the cells of a raster. Four by four cells are a group, whose cells lie side by side:
-/// they are asked together whether a primitive matters to them.
+/// Fronts in the cells of a raster, row by row. Four by four cells are asked together whether a
+/// primitive matters to them; such a window may begin at any cell, so rows of cells end in kBeyond
+/// cells without fronts, and as many such rows follow the last one.
 struct FrontRaster {
+    static constexpr int kBeyond = kBlockSide - 1;
+
     float left, top, side;          ///< of the first cell, q
-    int across, down;               ///< groups
-    const std::uint32_t* front_at;  ///< a cell, group by group: its front
-    float* farthest;  ///< likewise its farthest depth; minus infinity where there is no front
+    int across, down;               ///< cells
+    const std::uint32_t* front_at;  ///< a cell: its front
+    float* farthest;  ///< a cell: its farthest depth; minus infinity where there is no front
     Front* fronts;
-    std::uint32_t* dirty;  ///< a group: which of its cells' farthest depths are out of date
+    std::uint8_t* dirty;  ///< a cell: 1 while its farthest depth is out of date
+
+    int stride() const { return across + kBeyond; }
+    int cells() const { return stride() * (down + kBeyond); }
 };
 
 /// Bit i is set for lane i of sixteen.

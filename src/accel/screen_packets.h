@@ -75,6 +75,8 @@ using HitNumbers = std::array<float, 12>;
 
 /// The primitives of a cluster as a camera sees them.
 struct ScreenPacket {
+    ScreenPacket() {}  // NOLINT: clearing numbers that are all written anyway takes time
+
     BoundsPacket bounds;
     std::array<FormNumbers, kLanes> forms;
     /// What a hit needs of its primitive. Of a sphere its centre. Of a triangle its first corner,

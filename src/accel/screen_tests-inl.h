@@ -139,15 +139,15 @@ struct TriangleTest {
     /// Those of the cells that are not beyond an edge, by their corner that lies farthest inside.
     HWY_INLINE Mask may_cover(Mask cells, Vector left, Vector top, const Reach& reach,
                               float side) const {
-        // No cell that is reached begins farther from an end of an edge.
-        const float width = reach.right - reach.left + side;
-        const float height = reach.bottom - reach.top + side;
+        // No edge is longer than the bounds, and no cell that is reached begins farther from an
+        // end of one.
+        const float width = reach.right - reach.left;
+        const float height = reach.bottom - reach.top;
+        const float slack = kRounding * (width * (height + side) + height * (width + side));
         for (const TriangleForm::Edge& edge : form.edges) {
             const auto along = hn::Mul(set(edge.dx), hn::Sub(top, set(edge.y)));
             const auto across = hn::Mul(set(edge.dy), hn::Sub(left, set(edge.x)));
-            const float slack =
-                kRounding * (std::abs(edge.dx) * height + std::abs(edge.dy) * width);
-            const float most = (std::max(edge.dx, 0.0F) + std::max(-edge.dy, 0.0F)) * side;
+            const float most = (std::max(edge.dx, 0.0F) - std::min(edge.dy, 0.0F)) * side;
             cells = hn::And(cells, hn::Ge(hn::Sub(along, across), set(-(most + slack))));
         }
         return cells;

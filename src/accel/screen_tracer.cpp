@@ -12,6 +12,7 @@
 #include "accel/bounds_pyramid.h"
 #include "accel/candidates.h"
 #include "accel/cluster_bands.h"
+#include "accel/packet_store.h"
 #include "accel/screen_kernels.h"
 #include "accel/screen_packets.h"
 #include "accel/sphere_range.h"
@@ -52,10 +53,13 @@ struct ScreenEffort {
 class ScreenTileTracer final : public TileTracer {
   public:
     explicit ScreenTileTracer(const View& view)
-        : view_(view), candidates_(view.pyramid, view.bands ? &*view.bands : nullptr) {}
+        : view_(view),
+          candidates_(view.pyramid, view.bands ? &*view.bands : nullptr),
+          store_(view.clusters, view.basis) {}
 
     void enter(const ScreenBox& area) override {
         candidates_.enter(view_.window(area));
+        store_.enter();
         prepared_.clear();
         used_ = 0;
     }
@@ -93,15 +97,14 @@ class ScreenTileTracer final : public TileTracer {
 
     const View& view_;
     Candidates candidates_;
-    /// A candidate: what was made of it when a ray first came near, index into `packets_`.
-    std::vector<std::uint32_t> prepared_;
-    /// It keeps its size from area to area; the count says how much of it is in use.
-    std::vector<ScreenPacket> packets_;
-    std::uint32_t used_ = 0;
+    PacketStore store_;
+    std::vector<std::uint32_t> prepared_;  ///< a candidate: its place in the store, or kNotYet
+    std::uint32_t used_ = 0;               ///< candidates that rays came near
     std::vector<Front> fronts_;
-    std::vector<Lanes<float>> farthest_;          ///< of the cells of a raster, group by group
-    std::vector<Lanes<std::uint32_t>> front_at_;  ///< likewise
-    std::vector<std::uint32_t> dirty_;            ///< a group
+    // Of the cells of a raster, see FrontRaster:
+    std::vector<float> farthest_;
+    std::vector<std::uint32_t> front_at_;
+    std::vector<std::uint8_t> dirty_;
 };
 
 void ScreenTileTracer::intersect(std::span<const PointPacket> points,
@@ -110,7 +113,7 @@ void ScreenTileTracer::intersect(std::span<const PointPacket> points,
     for (std::size_t k = 0; k < points.size(); ++k) {
         front.start(view_.projection, points[k]);
         find_front(front);
-        ink::resolve(front, rays[k], packets_.data(), hits[k]);
+        ink::resolve(front, rays[k], store_.packets(), hits[k]);
     }
 }
 
@@ -120,14 +123,14 @@ void ScreenTileTracer::identify(std::span<const PointPacket> points,
     for (std::size_t k = 0; k < points.size(); ++k) {
         front.start(view_.projection, points[k]);
         find_front(front);
-        ink::identify(front, packets_.data(), hits[k]);
+        ink::identify(front, store_.packets(), hits[k]);
     }
 }
 
 void ScreenTileTracer::resolve(std::size_t first, std::span<const PointPacket> /*points*/,
                                std::span<const RayPacket> rays, std::span<HitPacket> hits) {
     for (std::size_t k = 0; k < hits.size(); ++k) {
-        ink::resolve(fronts_[first + k], rays[k], packets_.data(), hits[k]);
+        ink::resolve(fronts_[first + k], rays[k], store_.packets(), hits[k]);
     }
 }
 
@@ -137,25 +140,33 @@ void ScreenTileTracer::start(std::span<const PointPacket> points) {
 }
 
 FrontRaster ScreenTileTracer::lay_out(const BlockRaster& raster) {
-    const int across = (raster.across + kBlockSide - 1) / kBlockSide;
-    const int down = (raster.down + kBlockSide - 1) / kBlockSide;
-    const auto groups = static_cast<std::size_t>(across * down);
-    farthest_.assign(groups, Lanes<float>::filled(-kInfinity));
-    front_at_.resize(groups);
-    dirty_.assign(groups, 0);
+    const Vec2f centre = view_.projection.centre;
+    FrontRaster fronts{raster.left - centre.x,
+                       raster.top - centre.y,
+                       raster.side,
+                       raster.across,
+                       raster.down,
+                       nullptr,
+                       nullptr,
+                       fronts_.data(),
+                       nullptr};
+    const auto cells = static_cast<std::size_t>(fronts.cells());
+    farthest_.assign(cells, -kInfinity);
+    front_at_.resize(cells);
+    dirty_.assign(cells, 0);
     const std::uint32_t* packet = raster.packet_at.data();
     for (int y = 0; y < raster.down; ++y) {
-        for (int x = 0; x < raster.across; ++x, ++packet) {
+        auto cell = static_cast<std::size_t>(y * fronts.stride());
+        for (int x = 0; x < raster.across; ++x, ++cell, ++packet) {
             if (*packet == BlockRaster::kNone) continue;
-            const auto group = static_cast<std::size_t>(y / kBlockSide * across + x / kBlockSide);
-            const int lane = y % kBlockSide * kBlockSide + x % kBlockSide;
-            front_at_[group][lane] = *packet;
-            farthest_[group][lane] = fronts_[*packet].window.farthest;
+            front_at_[cell] = *packet;
+            farthest_[cell] = fronts_[*packet].window.farthest;
         }
     }
-    const Vec2f centre = view_.projection.centre;
-    return {raster.left - centre.x,   raster.top - centre.y,    raster.side,    across,       down,
-            front_at_.data()->data(), farthest_.data()->data(), fronts_.data(), dirty_.data()};
+    fronts.front_at = front_at_.data();
+    fronts.farthest = farthest_.data();
+    fronts.dirty = dirty_.data();
+    return fronts;
 }
 
 /// Cluster by cluster instead of point by point: each is looked at once, not by every block that
@@ -167,10 +178,12 @@ void ScreenTileTracer::find_fronts(const FrontRaster& raster, std::uint32_t most
         if (!(candidates_.depth(k * kLanes) < most)) return;
         const std::size_t end = std::min((k + 1) * kLanes, candidates_.count());
         for (std::size_t i = k * kLanes; i < end; ++i) {
-            if (i + 1 < end) prefetch(view_.clusters, candidates_.cluster(i + 1));
+            if (i + 1 < end && !store_.has(candidates_.cluster(i + 1))) {
+                prefetch(view_.clusters, candidates_.cluster(i + 1));
+            }
             if (!matters(candidates_.bounds(k), static_cast<int>(i % kLanes), raster)) continue;
             const std::uint32_t packet = packet_of(i);
-            ink::intersect(view_.basis, packets_.data(), packet, raster);
+            ink::intersect(view_.basis, store_.packets(), packet, raster);
         }
     }
 }
@@ -184,7 +197,7 @@ void ScreenTileTracer::find_front(Front& front) {
             const std::size_t i = k * kLanes + static_cast<std::size_t>(std::countr_zero(lanes));
             if (!(candidates_.depth(i) < front.window.farthest)) return;
             const std::uint32_t packet = packet_of(i);
-            ink::intersect(view_.basis, packets_.data(), packet, front);
+            ink::intersect(view_.basis, store_.packets(), packet, front);
         }
     }
 }
@@ -199,7 +212,7 @@ bool ScreenTileTracer::for_each_near(const Window& window, const Visit& visit) {
         for (LaneBits lanes = overlap(candidates_.bounds(k), window); lanes != 0;
              lanes &= lanes - 1) {
             const std::size_t i = k * kLanes + static_cast<std::size_t>(std::countr_zero(lanes));
-            const ScreenPacket& packet = packets_[packet_of(i)];
+            const ScreenPacket& packet = store_.packets()[packet_of(i)];
             for (LaneBits near = overlap(packet.bounds, window); near != 0; near &= near - 1) {
                 if (!visit(packet, std::countr_zero(near))) return false;
             }
@@ -237,13 +250,10 @@ std::uint32_t ScreenTileTracer::packet_of(std::size_t candidate) {
     if (prepared_.size() < candidates_.count()) prepared_.resize(candidates_.count(), kNotYet);
     std::uint32_t& index = prepared_[candidate];
     if (index != kNotYet) return index;
-    if (used_ == packets_.size()) packets_.resize(packets_.size() + kLanes);
-    index = used_++;
-    ScreenPacket& packet = packets_[index];
-    prepare(view_.basis, view_.clusters, view_.clusters.clusters[candidates_.cluster(candidate)],
-            packet);
+    ++used_;
+    index = store_.get(candidates_.cluster(candidate));
     // Closer than those of the cluster's box.
-    set_union(packet.bounds, candidates_.bounds(candidate / kLanes),
+    set_union(store_.packets()[index].bounds, candidates_.bounds(candidate / kLanes),
               static_cast<int>(candidate % kLanes));
     return index;
 }

@@ -490,8 +490,12 @@ bool LineFinder::is_smooth(const SuspectEdge& edge) const {
     const int i_b = edge.i + (edge.down ? 0 : 1);
     const int j_b = edge.j + (edge.down ? 1 : 0);
     const LatticeHit b = hit_at(i_b, j_b);
-    const Vec3f at_a = grid_.sample(grid_.index(edge.i, edge.j)).position;
-    const Vec3f at_b = grid_.sample(grid_.index(i_b, j_b)).position;
+    const auto position = [&](int i, int j) -> Vec3f {
+        const std::size_t k = grid_.index(i, j);
+        return {grid_.px[k], grid_.py[k], grid_.pz[k]};
+    };
+    const Vec3f at_a = position(edge.i, edge.j);
+    const Vec3f at_b = position(i_b, j_b);
     return edges_.surfaces.smooth_between(*a.hits, a.lane, &at_a, *b.hits, b.lane, &at_b);
 }
 

@@ -27,14 +27,16 @@ constexpr std::uint32_t kSeveralObjects = kNoObject - 1;
 
 /// The object that all rays of a packet hit, if they hit anything.
 std::uint32_t shared_object(const HitPacket& hits) {
+    static_assert(kNoObject + 1 == 0);
     std::uint32_t least = kNoObject;
-    std::uint32_t most = 0;
+    std::uint32_t after = 0;  // the largest one
     for (int i = 0; i < kLanes; ++i) {
         const std::uint32_t object = hits.object[i];
-        least = std::min(least, object);
-        most = std::max(most, object == kNoObject ? 0 : object);
+        const std::uint32_t next = object + 1;
+        least = object < least ? object : least;
+        after = next > after ? next : after;
     }
-    return least == kNoObject || least == most ? least : kSeveralObjects;
+    return after == 0 || least + 1 == after ? least : kSeveralObjects;
 }
 
 /// Ambient occlusion also dims the other lights, by this share: rays that graze the scene on their
@@ -158,6 +160,17 @@ void Shader::line_normals(const HitPacket& hits, NormalPacket& normals) const {
 
 void Shader::prefetch(const HitPacket& hits) const {
     if (!any_smooth_) return;
+    const std::uint32_t object = shared_object(hits);
+    if (object == kNoObject) return;
+    if (object != kSeveralObjects) {
+        const std::uint32_t* normals = surfaces_[object].corner_normals;
+        if (normals == nullptr) return;
+        for (int i = 0; i < kLanes; ++i) {
+            const std::uint32_t primitive = hits.object[i] == kNoObject ? 0 : hits.primitive[i];
+            __builtin_prefetch(normals + std::size_t{3} * primitive);
+        }
+        return;
+    }
     for (int i = 0; i < kLanes; ++i) {
         const auto* normals =
             hits.object[i] == kNoObject ? nullptr : surfaces_[hits.object[i]].corner_normals;
