@@ -105,6 +105,7 @@ lose_display() {
     server=
     [ "$status" = 1 ] || fail "without its display it ended with status $status"
     grep -q 'display is gone' log || fail "no word about the lost display"
+    [ "$(wc -l < log)" = 1 ] || fail "without its display it complains"
 }
 complains() {  # in red, in the bar below the picture, in a window of this height
     shot now.png

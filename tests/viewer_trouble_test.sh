@@ -67,18 +67,18 @@ xdotool key space
 until_ "it does not stop" rests
 
 # Another file by the dialog, and all of it in view again.
-xdotool key ctrl+o
-until_ "Ctrl+O shows no dialog" differs after.png
-xdotool type molecule.pdb
-xdotool key Return
-opened molecule.pdb
+choose() {
+    shot before_dialog.png
+    xdotool key ctrl+o
+    changed before_dialog.png dialog.png "Ctrl+O shows no dialog"
+    xdotool type --delay 30 "$1"
+    xdotool key Return
+    opened "$1"
+}
+choose molecule.pdb
 xdotool mousemove 300 450 click 4 click 4
 takes f
-xdotool key ctrl+o
-sleep 0.5
-xdotool type run.xyz
-xdotool key Return
-opened run.xyz
+choose run.xyz
 
 # A file that is replaced, and one that goes, while it is drawn.
 cp molecule.pdb other && mv other run.xyz

@@ -1,7 +1,5 @@
 #include "session/painter.h"
 
-#include <malloc.h>
-
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -16,16 +14,6 @@
 namespace inktrace::viewer {
 
 namespace {
-
-/// Every picture takes some megabytes and gives them back. That the system should have them
-/// meanwhile, and clear them each time, takes a tenth of a quick picture.
-void keep_freed_memory() {
-#ifdef __GLIBC__
-    constexpr int kLargest = 1 << 30;
-    mallopt(M_MMAP_THRESHOLD, kLargest);
-    mallopt(M_TRIM_THRESHOLD, kLargest);
-#endif
-}
 
 double ms_since(Clock::time_point start) {
     return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
@@ -77,10 +65,7 @@ Settings quick_settings(const Settings& settings) {
     return quick;
 }
 
-Painter::Painter(std::function<void()> news) : news_(std::move(news)) {
-    keep_freed_memory();
-    thread_ = std::thread([this] { run(); });
-}
+Painter::Painter(std::function<void()> news) : news_(std::move(news)), thread_([this] { run(); }) {}
 
 Painter::~Painter() {
     {

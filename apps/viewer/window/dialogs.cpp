@@ -46,6 +46,7 @@ void draw_open(Interface& interface) {
     if (!begin_dialog(interface, "Open", interface.open_dialog, 520)) return;
     std::string& file = interface.drafts["open file"];
     if (opening) {
+        file.clear();
         const auto& files = interface.session.files();
         const bool first = list.folder().empty() && !files.empty();
         list.enter(first ? files.front().parent_path() : list.folder());

@@ -9,9 +9,12 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cctype>
 #include <cstdio>
 #include <cstdlib>
+#include <exception>
+#include <thread>
 #include <utility>
 
 #include "inktrace/error.h"
@@ -23,20 +26,60 @@ namespace {
 
 std::string last_error;
 
-/// Xlib ends the program when the connection breaks; this says so, without running the destructors
-/// of what other threads still use.
-int display_is_gone(void* /*display*/) {
-    constexpr char kText[] = "inktrace view: the display is gone\n";
-    if (write(STDERR_FILENO, kText, sizeof kText - 1) < 0) _exit(1);
+// ---- A display that goes away ----
+
+using Unlock = void (*)(void* display);
+
+std::atomic<bool> display_is_gone = false;
+std::thread::id window_thread;  ///< the one that a lost display is thrown on
+Unlock unlock_display = nullptr;
+
+constexpr char kGone[] = "the display is gone";
+
+/// Xlib calls this where the connection has broken, on whichever thread notices, and has locked the
+/// display for that thread. The window's thread leaves by an exception; others just go on, and what
+/// they ask of the display has no effect.
+int on_broken_connection(void* display) {
+    const bool first = !display_is_gone.exchange(true);
+    unlock_display(display);
+    if (std::this_thread::get_id() != window_thread) return 0;
+    // While the stack unwinds for the first time, nothing may be thrown again.
+    if (first || std::uncaught_exceptions() == 0) throw Error(Error::Kind::input, kGone);
+    return 0;
+}
+
+/// Instead of ending the program.
+void go_on(void* /*display*/, void* /*unused*/) {}
+
+/// For an Xlib from before version 1.7, which ends the program in any case: without running the
+/// destructors of what other threads still use.
+int end_program(void* /*display*/) {
+    std::fprintf(stderr, "inktrace view: %s\n", kGone);
     _exit(1);
 }
 
+template <class Function>
+Function find_function(const char* name) {
+    return reinterpret_cast<Function>(dlsym(RTLD_DEFAULT, name));
+}
+
+/// To be called once GLFW is there: where it talks to an X server it has loaded Xlib.
 void watch_display() {
-    using Handler = int (*)(void*);
-    using SetHandler = Handler (*)(Handler);
-    // Where GLFW talks to an X server it has loaded this library.
-    void* const found = dlsym(RTLD_DEFAULT, "XSetIOErrorHandler");
-    if (found != nullptr) reinterpret_cast<SetHandler>(found)(display_is_gone);
+    using Handler = int (*)(void* display);
+    using Exit = void (*)(void* display, void* data);
+    const auto set_handler = find_function<Handler (*)(Handler)>("XSetIOErrorHandler");
+    const auto set_exit = find_function<void (*)(void*, Exit, void*)>("XSetIOErrorExitHandler");
+    const auto display_of_glfw = find_function<void* (*)()>("glfwGetX11Display");
+    unlock_display = find_function<Unlock>("XUnlockDisplay");
+    if (set_handler == nullptr) return;
+    void* const display = display_of_glfw != nullptr ? display_of_glfw() : nullptr;
+    if (set_exit == nullptr || unlock_display == nullptr || display == nullptr) {
+        set_handler(end_program);
+        return;
+    }
+    window_thread = std::this_thread::get_id();
+    set_handler(on_broken_connection);
+    set_exit(display, go_on, nullptr);
 }
 
 bool is_set(const char* variable) {
@@ -210,6 +253,8 @@ void Window::start_interface() {
 }
 
 Window::~Window() {
+    if (display_is_gone) return;  // all that would be given back is on it
+    window_thread = {};           // from here on nothing may be thrown
     for (const unsigned texture : {texture_, rest_}) {
         if (texture != 0) glDeleteTextures(1, &texture);
     }
@@ -245,7 +290,9 @@ void Window::wait(std::optional<std::chrono::steady_clock::time_point> until) {
     }
 }
 
-void Window::wake() { glfwPostEmptyEvent(); }
+void Window::wake() {
+    if (!display_is_gone) glfwPostEmptyEvent();
+}
 
 std::vector<Input> Window::take_input() { return std::exchange(input_, {}); }
 std::vector<std::filesystem::path> Window::take_drops() { return std::exchange(drops_, {}); }
