@@ -27,7 +27,7 @@ draw 5-engine "$data/meshes/2CylinderEngine.glb"
 draw 6-bar "$data/particles/mpm_karamelo_taylorbar3d_step1200.lammpstrj.gz" --color-by seq \
     --colormap coolwarm --view iso --line-width 1.5px
 draw 7-grains "$data/particles/dem_pile10192.vtu" --color-by radius --colormap coolwarm \
-    --eye 5.38,3.0,1.25 --look-at 5.38,5.38,0.06 --up 0,0,1 --line-width 1.5px
+    --eye 4.6,3.6,1.6 --look-at 5.38,5.38,-0.03 --up 0,0,1 --line-width 1.5px
 
 montage "$out"/[1-7]-*.png -resize 512x384 -tile 7x7 -geometry 256x192+2+2 "$out/looks.png"
 convert "$out/looks.png" -dither FloydSteinberg -colors 255 "PNG8:$out/looks.png"

@@ -124,6 +124,19 @@ TEST(AmbientOcclusion, OfARibosomeIsWithinOneHundredthOfThatByRays) {
     EXPECT_LT(error(scene, 1024, 300, 5), 0.006);
 }
 
+/// Strings of balls stand for the sticks.
+TEST(AmbientOcclusion, OfSticksIsNearThatByRays) {
+    const std::filesystem::path file = source_dir() / "samples" / "acetaminophen.xyz";
+    for (const Representation how : {Representation::sticks, Representation::ball_and_stick}) {
+        ReadOptions options;
+        options.data.representation = how;
+        const Scene scene(read_file(file, options).objects);
+        ASSERT_EQ(scene.objects().size(), 2U);
+        EXPECT_LT(error(scene, 512, 100, 3), 0.015);
+        EXPECT_LT(error(scene, 256, 30, 5), 0.015);
+    }
+}
+
 TEST(AmbientOcclusion, GetsBetterWithQuality) {
     std::mt19937 random(3);
     std::vector<Sphere> balls;
@@ -252,20 +265,26 @@ TEST(AmbientOcclusion, IsTheSameWhateverTheThreadsTilesAndWhatWasSeenBefore) {
 }
 
 /// Pixels between others are not all computed: also where a tile ends between them.
-TEST(AmbientOcclusion, OfSmallBallsIsTheSameWhateverTheTiles) {
+TEST(AmbientOcclusion, OfSmallBallsAndSticksIsTheSameWhateverTheTiles) {
     std::mt19937 random(6);
     std::vector<Sphere> balls;
     for (int i = 0; i < 300; ++i) {
         balls.push_back({uniform_point(random), 0.06F + 0.03F * uniform(random)});
     }
-    const Scene scene({sphere_object(balls)});
-    Settings settings = seen_from_front(150);
-    settings.shading.ambient = 1.0F;
-    settings.tile = 256;
-    const auto expected = draw(scene, settings).display().pixels;
-    for (const int tile : {4, 12, 36}) {
-        settings.tile = tile;
-        EXPECT_EQ(draw(scene, settings).display().pixels, expected) << tile;
+    ReadOptions options;
+    options.data.representation = Representation::sticks;
+    const std::filesystem::path file = source_dir() / "samples" / "acetaminophen.xyz";
+    for (const auto& objects :
+         {std::vector{sphere_object(balls)}, read_file(file, options).objects}) {
+        const Scene scene(objects);
+        Settings settings = seen_from_front(150);
+        settings.shading.ambient = 1.0F;
+        settings.tile = 256;
+        const auto expected = draw(scene, settings).display().pixels;
+        for (const int tile : {4, 12, 36}) {
+            settings.tile = tile;
+            EXPECT_EQ(draw(scene, settings).display().pixels, expected) << tile;
+        }
     }
 }
 

@@ -567,7 +567,7 @@ int Settings::lattice_points() const {
 namespace {
 
 /// Atoms and particles as spheres, among meshes if any: what light from all around costs little
-/// for. Sticks and glyphs would take it by tracing rays, a hundred times the rest of the frame.
+/// for. Sticks take several times the rest of the frame, and glyphs, by tracing rays, a hundred.
 bool draws_balls_alone(const Scene& scene) {
     bool balls = false;
     for (const Object& object : scene.objects()) {

@@ -13,6 +13,7 @@
 #include "shading/ray_sky.h"
 #include "shading/secondary_rays.h"
 #include "shading/sky_directions.h"
+#include "shading/stick_strings.h"
 
 namespace ink {
 
@@ -122,7 +123,10 @@ std::uint64_t next_number() {
 
 struct AmbientBake::Impl {
     Impl(const Scene& all, const Tracer& scene_tracer, int quality, const std::atomic<bool>* cancel)
-        : scene(all), directions(3 << quality), rays(scene_tracer, 16 << quality) {
+        : scene(all),
+          strings(StickStrings::of(scene)),
+          directions(strings ? std::min(6 << quality, 96) : 3 << quality),
+          rays(scene_tracer, 16 << quality) {
         std::size_t ball_count = 0;
         std::size_t triangles = 0;
         std::size_t corners = 0;
@@ -142,6 +146,7 @@ struct AmbientBake::Impl {
             }
         }
         if (balls_only) ball_sky.emplace(scene, directions, cancel);
+        if (strings) ball_sky.emplace(strings->balls(), directions, cancel);
         balls = LazyTable<BallBake>(ball_count);
         triangle_maps = LazyTable<NodeMaps<2 * kTriangleGrids>>(triangles);
         vertices = std::make_unique<std::atomic<std::uint64_t>[]>(corners);
@@ -156,15 +161,17 @@ struct AmbientBake::Impl {
     Surroundings& surroundings(const Sphere& ball, std::size_t ball_number) const;
     BallBake& bake_of(const Sphere& ball, std::size_t ball_number) const;
     float on_ball(std::uint32_t object, std::uint32_t primitive, Vec3f n, float radius_px) const;
+    float on_stick(std::uint32_t object, std::uint32_t primitive, Vec3f point, Vec3f n) const;
     float on_triangle(const HitPacket& hits, int lane, const Corners& corners,
                       float footprint) const;
     float at_vertex(std::uint32_t object, const Mesh& mesh, const Corners& corners,
                     std::uint32_t triangle, std::size_t corner) const;
 
     const Scene& scene;
-    SkyDirections directions;
+    std::optional<StickStrings> strings;
+    SkyDirections directions;  ///< thin things take more
     RaySky rays;
-    std::optional<BallSky> ball_sky;  ///< unless there is anything but balls
+    std::optional<BallSky> ball_sky;  ///< unless there is anything but balls and sticks
     std::vector<std::size_t> first_ball, first_triangle, first_vertex;  ///< of each object
     LazyTable<BallBake> balls;
     LazyTable<NodeMaps<2 * kTriangleGrids>> triangle_maps;  ///< of either side
@@ -197,8 +204,9 @@ float AmbientBake::Impl::on_ball(std::uint32_t object, std::uint32_t primitive, 
                                  float radius_px) const {
     const Sphere ball = std::get<Spheres>(scene.objects()[object].shape).at(primitive);
     const std::size_t ball_number = first_ball[object] + primitive;
-    if (ball_sky && radius_px < kLeastBallGrid) {
-        return ball_sky->openness(ball, surroundings(ball, ball_number), n);
+    // Towards strings, which have many balls that touch, quotients do not vary slowly.
+    if (ball_sky && (strings || radius_px < kLeastBallGrid)) {
+        return ball_sky->openness(ball, surroundings(ball, ball_number), n * ball.radius, n);
     }
     const std::size_t level = grid_for(ball_nodes(radius_px), kBallGrids, ball_side);
     const int side = ball_side(level);
@@ -219,7 +227,8 @@ float AmbientBake::Impl::on_ball(std::uint32_t object, std::uint32_t primitive, 
             const Vec3f at = fold(
                 {static_cast<float>(column) / half - 1.0F, static_cast<float>(row) / half - 1.0F});
             if (!ball_sky) return rays.openness(ball.centre + at * ball.radius, at);
-            const float open = ball_sky->openness(ball, surroundings(ball, ball_number), at);
+            const float open =
+                ball_sky->openness(ball, surroundings(ball, ball_number), at * ball.radius, at);
             return (open + kRaise) / at_contacts(at);
         });
     };
@@ -230,6 +239,13 @@ float AmbientBake::Impl::on_ball(std::uint32_t object, std::uint32_t primitive, 
     const float mean = top + b * (bottom - top);
     if (!ball_sky) return mean;
     return std::clamp(mean * at_contacts(n) - kRaise, 0.0F, 1.0F);
+}
+
+float AmbientBake::Impl::on_stick(std::uint32_t object, std::uint32_t primitive, Vec3f point,
+                                  Vec3f n) const {
+    const std::size_t nearest = strings->nearest(object, primitive, point);
+    const Sphere& ball = strings->balls()[nearest];
+    return ball_sky->openness(ball, surroundings(ball, nearest), point - ball.centre, n);
 }
 
 /// Where many triangles share a vertex and its normal, so do they its openness.
@@ -389,7 +405,8 @@ class SeenBake final : public AmbientOcclusion {
     void find(const SurfacePacket& surface, std::uint32_t own, Lanes<float>& open) const {
         const HitPacket& hits = surface.hits;
         const int any = std::countr_zero(own);
-        const bool spares = bake_.ball_sky && radius_px(hits, any) < kLeastBallGrid;
+        const bool spares =
+            bake_.ball_sky && (bake_.strings || radius_px(hits, any) < kLeastBallGrid);
         const std::uint32_t between = spares ? own & kBetween : 0U;
         for_lanes(own & ~between, [&](int i) { open[i] = at(surface, i); });
         for_lanes(between, [&](int i) {
@@ -432,6 +449,7 @@ class SeenBake final : public AmbientOcclusion {
         const Vec3f p{surface.rays.origin_x[i] + hits.t[i] * surface.rays.dir_x[i],
                       surface.rays.origin_y[i] + hits.t[i] * surface.rays.dir_y[i],
                       surface.rays.origin_z[i] + hits.t[i] * surface.rays.dir_z[i]};
+        if (bake_.strings) return bake_.on_stick(hits.object[i], hits.primitive[i], p, normal);
         return bake_.rays.openness(p, normal,
                                    screen_noise(surface.points.x[i], surface.points.y[i]));
     }

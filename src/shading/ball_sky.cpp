@@ -56,15 +56,30 @@ std::vector<Sphere> all_balls(const Scene& scene) {
     return balls;
 }
 
+/// Orders balls so that each sixteen of them lie close together: halves them along the axis on
+/// which they reach farthest, again and again.
+void gather_neighbours(std::span<Sphere> balls) {
+    if (balls.size() <= kLanes) return;
+    Bounds3f box;
+    for (const Sphere& ball : balls) box.add(ball.centre, 0.0F);
+    const Vec3f size = box.upper - box.lower;
+    float Vec3f::*widest = size.x >= std::max(size.y, size.z) ? &Vec3f::x
+                           : size.y >= size.z                 ? &Vec3f::y
+                                                              : &Vec3f::z;
+    const std::size_t half = (packets_for(balls.size()) / 2) * kLanes;
+    std::ranges::nth_element(balls, balls.begin() + static_cast<std::ptrdiff_t>(half), {},
+                             [widest](const Sphere& ball) { return ball.centre.*widest; });
+    gather_neighbours(balls.first(half));
+    gather_neighbours(balls.subspan(half));
+}
+
 }  // namespace
 
 BallSky::BallSky(const Scene& scene, const SkyDirections& directions,
                  const std::atomic<bool>* cancel)
     : directions_(directions), far_(all_balls(scene), directions, cancel) {
-    double sum = 0.0;
-    std::size_t count = 0;
     const Clusters clusters(scene);
-    std::vector<Sphere> balls;
+    std::vector<Sphere> enclosing;
     for (const Cluster& cluster : clusters.clusters) {
         if (cluster.kind != ClusterKind::spheres) continue;
         const SphereLanes& there = clusters.spheres[cluster.packet];
@@ -72,13 +87,46 @@ BallSky::BallSky(const Scene& scene, const SkyDirections& directions,
             cluster.copy == kNoCopy ? there : moved(there, clusters.copies[cluster.copy].motion);
         BallPacket packet{lanes.centre.x, lanes.centre.y, lanes.centre.z, lanes.radius};
         for (int i = cluster.count; i < kLanes; ++i) packet.radius[i] = kNoBall;
-        balls.push_back(enclose(
-            cluster.count, [&](std::size_t i) { return ball_at(packet, static_cast<int>(i)); }));
-        balls_.push_back(packet);
-        count += cluster.count;
-        for (int i = 0; i < cluster.count; ++i) sum += static_cast<double>(packet.radius[i]);
+        add_packet(packet, cluster.count, enclosing);
     }
-    if (count > 0) usual_radius_ = static_cast<float>(sum / static_cast<double>(count));
+    build_levels(std::move(enclosing));
+}
+
+BallSky::BallSky(std::vector<Sphere> balls, const SkyDirections& directions,
+                 const std::atomic<bool>* cancel)
+    : directions_(directions), far_(balls, directions, cancel) {
+    gather_neighbours(balls);
+    std::vector<Sphere> enclosing;
+    for (std::size_t first = 0; first < balls.size(); first += kLanes) {
+        BallPacket packet{};
+        packet.radius.fill(kNoBall);
+        const std::size_t count = std::min<std::size_t>(kLanes, balls.size() - first);
+        for (std::size_t i = 0; i < count; ++i) {
+            put(balls[first + i].centre, balls[first + i].radius, static_cast<int>(i), packet);
+        }
+        add_packet(packet, count, enclosing);
+    }
+    build_levels(std::move(enclosing));
+}
+
+void BallSky::add_packet(const BallPacket& packet, std::size_t count,
+                         std::vector<Sphere>& enclosing) {
+    enclosing.push_back(
+        enclose(count, [&](std::size_t i) { return ball_at(packet, static_cast<int>(i)); }));
+    balls_.push_back(packet);
+}
+
+void BallSky::build_levels(std::vector<Sphere> balls) {
+    double sum = 0.0;
+    double count = 0.0;
+    for (const BallPacket& packet : balls_) {
+        for (const float radius : packet.radius) {
+            if (radius == kNoBall) continue;
+            sum += static_cast<double>(radius);
+            count += 1.0;
+        }
+    }
+    if (count > 0.0) usual_radius_ = static_cast<float>(sum / count);
     while (!balls.empty()) {
         std::vector<BallPacket> level(packets_for(balls.size()));
         std::vector<Sphere> above;
@@ -107,7 +155,7 @@ void BallSky::survey(const Sphere& ball, Surroundings& surroundings) const {
     }
     surroundings.windows.resize(directions_.groups.size());
     surroundings.seen = surroundings.clear = surroundings.shut = {};
-    surroundings.window_radius = ball.radius * far_.texels / far_.window_stretch(ball.radius);
+    surroundings.window_scale = far_.texels / far_.window_stretch(ball.radius);
 }
 
 /// Adds balls that come near to one.
@@ -157,8 +205,10 @@ float BallSky::reach_of(const Sphere& ball) const {
     return ball.radius + kNear * std::min(ball.radius, 2.0F * usual_radius_);
 }
 
-float BallSky::openness(const Sphere& ball, Surroundings& surroundings, Vec3f n) const {
-    return ball_kernels::openness({directions_, far_, ball, reach_of(ball)}, surroundings, n);
+float BallSky::openness(const Sphere& ball, Surroundings& surroundings, Vec3f point,
+                        Vec3f n) const {
+    return ball_kernels::openness({directions_, far_, ball, reach_of(ball)}, surroundings, point,
+                                  n);
 }
 
 float BallSky::contact_openness(const BallPacket& contacts, float radius, Vec3f n) {

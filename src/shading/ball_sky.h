@@ -20,7 +20,7 @@ struct Surroundings {
     std::vector<FarWindow> windows;
     GroupBits seen;
     GroupBits clear, shut;  ///< those where all is free, or nothing
-    float window_radius;    ///< the ball's, in texels of the windows
+    float window_scale;     ///< texels of the windows a unit of the scene
 };
 
 /// The spheres of a scene as what hides the sky from each other.
@@ -34,11 +34,15 @@ class BallSky {
     BallSky(const Scene& scene, const SkyDirections& directions,
             const std::atomic<bool>* cancel = nullptr);
 
+    /// Of balls that are no scene's.
+    BallSky(std::vector<Sphere> balls, const SkyDirections& directions,
+            const std::atomic<bool>* cancel = nullptr);
+
     /// What there is about a ball.
     void survey(const Sphere& ball, Surroundings& surroundings) const;
-    /// The share of the sky that lies open above the point of the ball with normal `n`, weighted by
-    /// the cosine to it.
-    float openness(const Sphere& ball, Surroundings& surroundings, Vec3f n) const;
+    /// The share of the sky that lies open above a point of the ball, weighted by the cosine to its
+    /// normal `n`. `point`, relative to the ball's centre, may lie a little outside.
+    float openness(const Sphere& ball, Surroundings& surroundings, Vec3f point, Vec3f n) const;
     /// The nearest sixteen balls that touch one or nearly do.
     static BallPacket contacts(const Sphere& ball, const Surroundings& surroundings);
     /// The product of what each of the contacts alone would leave open: it has the steep fall of
@@ -46,6 +50,8 @@ class BallSky {
     static float contact_openness(const BallPacket& contacts, float radius, Vec3f n);
 
   private:
+    void add_packet(const BallPacket& packet, std::size_t count, std::vector<Sphere>& enclosing);
+    void build_levels(std::vector<Sphere> enclosing);
     void gather(const Sphere& ball, std::size_t level, std::size_t packet,
                 Surroundings& surroundings) const;
 

@@ -77,9 +77,11 @@ struct Discs {
     }
 };
 
-/// Finds those that rise, close together, as seen from the point n * radius.
-HWY_INLINE void rise(const Surroundings& surroundings, float radius, Vec3f n, Discs& discs) {
+/// Finds those that rise above the plane through a point, close together. What only touches it does
+/// not.
+HWY_INLINE void rise(const Surroundings& surroundings, Vec3f point, Vec3f n, Discs& discs) {
     discs.make_room(surroundings.near_count);
+    const float height = dot(point, n) * (1.0F + 1e-4F);
     float* to_x = discs.x[0].data();
     float* to_y = discs.y[0].data();
     float* to_z = discs.z[0].data();
@@ -94,10 +96,10 @@ HWY_INLINE void rise(const Surroundings& surroundings, float radius, Vec3f n, Di
             const auto size = load(balls.radius, i);
             const auto up = sum_of_products(set(n.x), x, set(n.y), y, set(n.z), z);
             const auto above =
-                hn::And(hn::Gt(hn::Add(up, size), set(radius)), hn::Gt(size, hn::Zero(kFloats)));
-            hn::CompressBlendedStore(hn::Sub(x, set(n.x * radius)), above, kFloats, to_x + count);
-            hn::CompressBlendedStore(hn::Sub(y, set(n.y * radius)), above, kFloats, to_y + count);
-            hn::CompressBlendedStore(hn::Sub(z, set(n.z * radius)), above, kFloats, to_z + count);
+                hn::And(hn::Gt(hn::Add(up, size), set(height)), hn::Gt(size, hn::Zero(kFloats)));
+            hn::CompressBlendedStore(hn::Sub(x, set(point.x)), above, kFloats, to_x + count);
+            hn::CompressBlendedStore(hn::Sub(y, set(point.y)), above, kFloats, to_y + count);
+            hn::CompressBlendedStore(hn::Sub(z, set(point.z)), above, kFloats, to_z + count);
             count += hn::CompressBlendedStore(size, above, kFloats, to_radius + count);
         }
     }
@@ -312,11 +314,11 @@ HWY_INLINE std::uint64_t find_left(const SkyLeft& sky, std::size_t word) {
     return found;
 }
 
-float find_openness(const SkyView& view, Surroundings& surroundings, Vec3f n) {
+float find_openness(const SkyView& view, Surroundings& surroundings, Vec3f point, Vec3f n) {
     const SkyDirections& directions = view.directions;
     Scratch& scratch = own_scratch();
     SkyLeft& sky = scratch.sky;
-    rise(surroundings, view.ball.radius, n, scratch.discs);
+    rise(surroundings, point, n, scratch.discs);
     see(directions.spacing, scratch.discs);
     Lanes<float> sum;
     open_all(directions, n, sky, sum);
@@ -331,7 +333,7 @@ float find_openness(const SkyView& view, Surroundings& surroundings, Vec3f n) {
         for_groups(sky.above[word] & ~surroundings.seen[word], word,
                    [&](std::size_t g) { look_out(view, g, surroundings); });
     }
-    const Vec3f offset = n * surroundings.window_radius;
+    const Vec3f offset = point * surroundings.window_scale;
     Lanes<float> open_sum;
     for (int i = 0; i < kLanes; i += kStep) {
         auto open = hn::Zero(kFloats);
@@ -422,8 +424,8 @@ LaneBits within(const BallPacket& balls, Vec3f point, float reach) {
     return HWY_DYNAMIC_DISPATCH(find_within)(balls, point, reach);
 }
 
-float openness(const SkyView& view, Surroundings& surroundings, Vec3f n) {
-    return HWY_DYNAMIC_DISPATCH(find_openness)(view, surroundings, n);
+float openness(const SkyView& view, Surroundings& surroundings, Vec3f point, Vec3f n) {
+    return HWY_DYNAMIC_DISPATCH(find_openness)(view, surroundings, point, n);
 }
 
 float contact_openness(const BallPacket& contacts, float radius, Vec3f n) {

@@ -21,7 +21,7 @@ struct SkyView {
 };
 
 /// BallSky::openness.
-float openness(const SkyView& view, Surroundings& surroundings, Vec3f n);
+float openness(const SkyView& view, Surroundings& surroundings, Vec3f point, Vec3f n);
 
 /// BallSky::contact_openness.
 float contact_openness(const BallPacket& contacts, float radius, Vec3f n);

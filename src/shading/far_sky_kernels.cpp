@@ -178,7 +178,8 @@ std::uint64_t stretched_window(const FarSky& sky, const FarSky::Tile* map, float
 
 void look_through(const FarSky& sky, std::size_t group, const Sphere& ball, float reach,
                   FarWindow& window) {
-    const float radius = ball.radius * sky.texels;
+    // Points that look through it may lie a little outside of the ball.
+    const float radius = 1.1F * ball.radius * sky.texels;
     const float stretch = sky.window_stretch(ball.radius);
     const Vec3f c = ball.centre;
     const FarSky::Frame& frame = sky.frames[group];
