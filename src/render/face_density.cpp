@@ -52,8 +52,8 @@ LineDensity face_density(const Edges& edges, const FaceMap& faces, float enlarge
     const Size size = edges.pipeline.settings.size;
     // A crossing on every edge of the picture's own lattice, see LineFinder::add_face_density.
     const float most = 0.5F * std::numbers::pi_v<float> * enlarged;
-    // Squares of a density are sixteen pixels wide at least, so a quarter of all points will do.
-    constexpr std::array kPoints{0, 6, 9, 15};
+    // Squares of a density are sixteen pixels wide at least, so an eighth of all points will do.
+    constexpr std::array kPoints{5, 15};
     constexpr float kArea = static_cast<float>(kLanes) / static_cast<float>(kPoints.size());
     std::vector<LineDensity> counted(static_cast<std::size_t>(loop.threads()), edges.no_lines);
     const auto rows = static_cast<std::size_t>((size.height + kBlockSide - 1) / kBlockSide);

@@ -58,24 +58,31 @@ FaceMap::FaceMap(const FaceMap& small, Size size, const std::vector<int>& column
       blocks_down_((size.height + kBlockSide - 1) / kBlockSide),
       triangles_(static_cast<std::size_t>(blocks_across_) *
                  static_cast<std::size_t>(blocks_down_)) {
+    // Where the small picture has it, in a row of its blocks.
+    std::vector<int> place;
+    for (const int x : column_of) place.push_back(x / kBlockSide * kLanes + x % kBlockSide);
     constexpr std::size_t kRows = 32;
-    parallel_ranges(static_cast<std::size_t>(size.height), kRows,
-                    [&](std::size_t begin, std::size_t end) {
-                        for (auto y = static_cast<int>(begin); y < static_cast<int>(end); ++y) {
-                            const int from_y = row_of[static_cast<std::size_t>(y)];
-                            Lanes<std::uint32_t>* const row = triangles_.data() + block(0, y);
-                            const Lanes<std::uint32_t>* const from =
-                                small.triangles_.data() + small.block(0, from_y);
-                            for (int x = 0; x < size_.width; ++x) {
-                                const int from_x = column_of[static_cast<std::size_t>(x)];
-                                row[x / kBlockSide][lane(x, y)] =
-                                    from[from_x / kBlockSide][lane(from_x, from_y)];
-                            }
-                        }
-                    });
-    const int right = (blocks_across_ - 1) * kBlockSide;
+    const auto enlarge_rows = [&](std::size_t begin, std::size_t end) {
+        std::vector<std::uint32_t> line(
+            static_cast<std::size_t>(blocks_across_) * std::size_t{kBlockSide}, kNone);
+        int last = -1;  // several rows come from one
+        for (auto y = static_cast<int>(begin); y < static_cast<int>(end); ++y) {
+            const int from_y = row_of[static_cast<std::size_t>(y)];
+            const Lanes<std::uint32_t>* const from =
+                small.triangles_.data() + small.block(0, from_y);
+            const int first = lane(0, from_y);
+            for (std::size_t x = 0; from_y != last && x < place.size(); ++x) {
+                line[x] = from[place[x] / kLanes][place[x] % kLanes + first];
+            }
+            last = from_y;
+            Lanes<std::uint32_t>* const row = triangles_.data() + block(0, y);
+            for (int b = 0; b < blocks_across_; ++b) {
+                std::copy_n(line.data() + b * kBlockSide, kBlockSide, row[b].data() + lane(0, y));
+            }
+        }
+    };
+    parallel_ranges(static_cast<std::size_t>(size.height), kRows, enlarge_rows);
     const int bottom = (blocks_down_ - 1) * kBlockSide;
-    for (int y = 0; y < size.height; y += kBlockSide) clear_beyond(right, y);
     for (int x = 0; x < size.width; x += kBlockSide) clear_beyond(x, bottom);
 }
 
