@@ -365,9 +365,7 @@ RidgeGrid stepped_plane(int width, int height, int step_at, int hole_x, int hole
         for (int i = 0; i < width; ++i) {
             const std::size_t n = grid.index(i, j);
             grid.id[n] = i == hole_x && j == hole_y ? kBackground : 7;
-            grid.px[n] = static_cast<float>(i);
-            grid.py[n] = static_cast<float>(j);
-            grid.pz[n] = i < step_at ? 0.0F : 5.0F;
+            grid.t[n] = i < step_at ? 20.0F : 15.0F;
             grid.nx[n] = grid.ny[n] = 0.0F;
             grid.nz[n] = 1.0F;
         }
@@ -382,7 +380,9 @@ TEST(SmoothDiscs, HoldNeitherAStepNorAHole) {
          {std::array{64, 100, 10}, std::array{128, 63, 9}, std::array{20, 127, 12}}) {
         const RidgeGrid grid = stepped_plane(kWidth, kHeight, step_at, hole_x, hole_y);
         const std::vector<int> half_widths{4, 4, 3, 2, 0};
-        SmoothDiscs discs(grid, half_widths);
+        const Viewpoint from_above{
+            {}, {0, 0, -1}, true, {{0, 0, 20}, {1, 0, 0}, {0, 1, 0}}, {{0, 0, -2}, {}, {}}};
+        SmoothDiscs discs(grid, from_above, half_widths);
         constexpr int kRadius = 4;
         discs.start(kRadius);
         for (int j = kRadius; j < kHeight - kRadius; ++j) {

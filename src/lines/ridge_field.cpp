@@ -93,11 +93,11 @@ std::uint32_t bits_from(const std::vector<NodeBits>& words, int i) {
 
 }  // namespace
 
-RidgeField::RidgeField(const RidgeGrid& grid, const RidgePattern& pattern,
-                       const RidgeSettings& settings)
+RidgeField::RidgeField(const RidgeGrid& grid, const Viewpoint& viewpoint,
+                       const RidgePattern& pattern, const RidgeSettings& settings)
     : grid_(grid),
       settings_(settings),
-      discs_(grid, pattern.half_widths()),
+      discs_(grid, viewpoint, pattern.half_widths()),
       columns_(grid.width - 2 * discs_.radius()),
       crossed_down_(words_for(columns_)) {
     for (const RidgePattern::Point& point : pattern.points) {

@@ -43,7 +43,8 @@ struct RidgePiece {
 class RidgeField {
   public:
     /// Keeps references.
-    RidgeField(const RidgeGrid& grid, const RidgePattern& pattern, const RidgeSettings& settings);
+    RidgeField(const RidgeGrid& grid, const Viewpoint& viewpoint, const RidgePattern& pattern,
+               const RidgeSettings& settings);
 
     /// Rows and columns at the rim of the grid in which there are no estimates.
     int apron() const { return discs_.radius(); }

@@ -1,10 +1,12 @@
 #pragma once
 
 #include <cstddef>
+#include <span>
 #include <vector>
 
 #include "base/image.h"
 #include "base/lanes.h"
+#include "base/memory.h"
 #include "base/vec.h"
 #include "scene/ids.h"
 
@@ -19,20 +21,23 @@ struct RidgeGrid {
         const auto size =
             static_cast<std::size_t>(width) * static_cast<std::size_t>(height) + kLanes;
         id.resize(size);
-        for (auto* plane : {&px, &py, &pz, &nx, &ny, &nz, &t}) plane->resize(size);
+        std::vector<std::span<float>*> planes{&nx, &ny, &nz, &t};
+        reserve_large(values_, planes.size() * size);
+        values_.resize(planes.size() * size);
+        for (std::size_t k = 0; k < planes.size(); ++k) {
+            *planes[k] = std::span(values_).subspan(k * size, size);
+        }
     }
-
-    template <class T>
-    using Plane = std::vector<T, UninitializedAllocator<T>>;
+    RidgeGrid(RidgeGrid&&) = default;
 
     int width, height;
     Vec2f first;    ///< where node (0, 0) is, pixels
     float spacing;  ///< pixels
 
-    Plane<GeometryId> id;     ///< kBackground also for what shall have no ridges
-    Plane<float> px, py, pz;  ///< position, scene frame; of no meaning on the background
-    Plane<float> nx, ny, nz;  ///< shading normal, unit, likewise
-    Plane<float> t;           ///< distance along the ray, likewise
+    std::vector<GeometryId, UninitializedAllocator<GeometryId>>
+        id;                       ///< kBackground also for what shall have no ridges
+    std::span<float> nx, ny, nz;  ///< shading normal, unit; of no meaning on the background
+    std::span<float> t;           ///< distance along the ray, likewise
 
     std::size_t index(int i, int j) const {
         return static_cast<std::size_t>(j) * static_cast<std::size_t>(width) +
@@ -42,6 +47,9 @@ struct RidgeGrid {
         return {first.x + static_cast<float>(i) * spacing,
                 first.y + static_cast<float>(j) * spacing};
     }
+
+  private:
+    std::vector<float, UninitializedAllocator<float>> values_;  ///< of all planes, in large pages
 };
 
 }  // namespace ink

@@ -11,6 +11,18 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#ifndef INK_RAY_RAMP
+#define INK_RAY_RAMP
+namespace ink {
+
+/// A coordinate of rays, which is affine along a row.
+struct RayRamp {
+    float first, step;
+};
+
+}  // namespace ink
+#endif
+
 HWY_BEFORE_NAMESPACE();
 namespace ink::HWY_NAMESPACE {
 
@@ -36,7 +48,10 @@ HWY_INLINE Number dot(Number ax, Number ay, Number az, Number bx, Number by, Num
     return hn::Add(hn::Add(hn::Mul(ax, bx), hn::Mul(ay, by)), hn::Mul(az, bz));
 }
 
-HWY_INLINE NodeBits link_some(const RidgeGrid& grid, std::size_t a, std::size_t b) {
+HWY_INLINE NodeBits link_some(const NodeRow& row_a, const NodeRow& row_b, std::size_t i) {
+    const RidgeGrid& grid = row_a.grid;
+    const std::size_t a = row_a.first + i;
+    const std::size_t b = row_b.first + i;
     constexpr float kLeastCosine = 0.5F;
     constexpr float kChordSine = 0.6F;
     const auto id_a = hn::LoadU(kIds, grid.id.data() + a);
@@ -45,12 +60,13 @@ HWY_INLINE NodeBits link_some(const RidgeGrid& grid, std::size_t a, std::size_t 
     const NodeBits hit = bits_of(kIds, hn::Ne(id_a, hn::Set(kIds, kBackground)));
     const NodeBits alike = hit & ~other;
     if (alike == 0) return 0;
-    const auto difference = [&](const auto& plane) HWY_ATTR {
-        return hn::Sub(load(plane.data() + b), load(plane.data() + a));
+    const auto difference = [&](const auto& from, const auto& to) HWY_ATTR {
+        return hn::Sub(load(to.data() + row_b.first_place + i),
+                       load(from.data() + row_a.first_place + i));
     };
-    const Number cx = difference(grid.px);
-    const Number cy = difference(grid.py);
-    const Number cz = difference(grid.pz);
+    const Number cx = difference(row_a.places.x, row_b.places.x);
+    const Number cy = difference(row_a.places.y, row_b.places.y);
+    const Number cz = difference(row_a.places.z, row_b.places.z);
     const Number ax = load(grid.nx.data() + a);
     const Number ay = load(grid.ny.data() + a);
     const Number az = load(grid.nz.data() + a);
@@ -81,11 +97,30 @@ HWY_INLINE void fill_words(int count, NodeBits* words, const Some& some) {
     }
 }
 
-void link_nodes(const RidgeGrid& grid, std::size_t a, std::size_t b, int count, NodeBits* links) {
-    fill_words(count, links, [&](int i) HWY_ATTR {
-        const auto at = static_cast<std::size_t>(i);
-        return link_some(grid, a + at, b + at);
-    });
+void link_nodes(const NodeRow& a, const NodeRow& b, int count, NodeBits* links) {
+    fill_words(count, links,
+               [&](int i) HWY_ATTR { return link_some(a, b, static_cast<std::size_t>(i)); });
+}
+
+HWY_INLINE Number at(const RayRamp& ramp, Number i) {
+    return hn::Add(hn::Set(kFloats, ramp.first), hn::Mul(hn::Set(kFloats, ramp.step), i));
+}
+
+void place_row(const float* t, int count, const std::array<RayRamp, 3>& origin,
+               const std::array<RayRamp, 3>& direction, NodePlaces& places) {
+    for (int first = 0; first < count; first += kStep) {
+        const Number i = hn::Iota(kFloats, static_cast<float>(first));
+        const Number dx = at(direction[0], i);
+        const Number dy = at(direction[1], i);
+        const Number dz = at(direction[2], i);
+        const Number scale = hn::Div(load(t + first), hn::Sqrt(dot(dx, dy, dz, dx, dy, dz)));
+        const auto place = [&](const RayRamp& from, Number d, std::vector<float>& to) HWY_ATTR {
+            hn::StoreU(hn::Add(at(from, i), hn::Mul(d, scale)), kFloats, to.data() + first);
+        };
+        place(origin[0], dx, places.x);
+        place(origin[1], dy, places.y);
+        place(origin[2], dz, places.z);
+    }
 }
 
 /// Sums for the derivatives of one component of the normals, by whether a derivative changes its
@@ -202,11 +237,23 @@ HWY_AFTER_NAMESPACE();
 namespace ink {
 
 HWY_EXPORT(link_nodes);
+HWY_EXPORT(place_row);
 HWY_EXPORT(differentiate);
 HWY_EXPORT(cross_rows);
 
-void link_nodes(const RidgeGrid& grid, std::size_t a, std::size_t b, int count, NodeBits* links) {
-    HWY_DYNAMIC_DISPATCH(link_nodes)(grid, a, b, count, links);
+void link_nodes(const NodeRow& a, const NodeRow& b, int count, NodeBits* links) {
+    HWY_DYNAMIC_DISPATCH(link_nodes)(a, b, count, links);
+}
+
+void place_nodes(const RidgeGrid& grid, int row, const Viewpoint& viewpoint, NodePlaces& places) {
+    const auto ramps = [&](const Viewpoint::Affine& rays) {
+        const Vec3f first = to_float(rays(grid.point(0, row)));
+        const Vec3f step = to_float(rays.dx * static_cast<double>(grid.spacing));
+        return std::array<RayRamp, 3>{{{first.x, step.x}, {first.y, step.y}, {first.z, step.z}}};
+    };
+    HWY_DYNAMIC_DISPATCH(place_row)
+    (grid.t.data() + grid.index(0, row), grid.width, ramps(viewpoint.origin),
+     ramps(viewpoint.direction), places);
 }
 
 void differentiate(const RidgeGrid& grid, std::size_t first, const MirroredPattern& pattern,

@@ -8,6 +8,7 @@
 #include "base/lanes.h"
 #include "lines/ridge_grid.h"
 #include "lines/ridges.h"
+#include "sampling/samples.h"
 
 namespace ink {
 
@@ -18,10 +19,24 @@ inline constexpr std::size_t words_for(int nodes) {
     return static_cast<std::size_t>((nodes + kNodesInWord - 1) / kNodesInWord);
 }
 
-/// Sets bit i where nodes a + i and b + i of a grid, which lie side by side, are on one smooth
-/// surface: normals differ by less than 60 degrees, and the chord is at a right angle to their
-/// mean, about. `count` of them; further bits of the last word are cleared.
-void link_nodes(const RidgeGrid& grid, std::size_t a, std::size_t b, int count, NodeBits* links);
+/// Where what the nodes of a row see lies, in the scene's frame. There is room for sixteen more.
+struct NodePlaces {
+    std::vector<float> x, y, z;
+};
+void place_nodes(const RidgeGrid& grid, int row, const Viewpoint& viewpoint, NodePlaces& places);
+
+/// Nodes of a grid, as many as there are places from that one on.
+struct NodeRow {
+    const RidgeGrid& grid;
+    std::size_t first;  ///< of the grid
+    const NodePlaces& places;
+    std::size_t first_place;
+};
+
+/// Sets bit i where nodes i of two rows, which lie side by side, are on one smooth surface: normals
+/// differ by less than 60 degrees, and the chord is at a right angle to their mean, about. `count`
+/// of them; further bits of the last word are cleared.
+void link_nodes(const NodeRow& a, const NodeRow& b, int count, NodeBits* links);
 
 /// Points of a neighbourhood that mirror each other, as offsets in a grid's planes, with the
 /// weights that the first one has in each derivative. Those of the others are the same, or

@@ -26,8 +26,10 @@ void and_shifted(const NodeBits* from, std::size_t count, int by, NodeBits* word
 
 }  // namespace
 
-SmoothDiscs::SmoothDiscs(const RidgeGrid& grid, std::vector<int> half_widths)
+SmoothDiscs::SmoothDiscs(const RidgeGrid& grid, const Viewpoint& viewpoint,
+                         std::vector<int> half_widths)
     : grid_(grid),
+      viewpoint_(viewpoint),
       half_widths_(std::move(half_widths)),
       words_(words_for(grid.width)),
       rows_(2 * half_widths_.size() - 1),
@@ -38,10 +40,16 @@ SmoothDiscs::SmoothDiscs(const RidgeGrid& grid, std::vector<int> half_widths)
         row.across.resize(widths * words_);
         row.down.resize(widths * words_);
     }
+    for (NodePlaces* places : {&places_, &places_below_}) {
+        for (auto* plane : {&places->x, &places->y, &places->z}) {
+            plane->resize(static_cast<std::size_t>(grid.width) + kLanes);
+        }
+    }
 }
 
 void SmoothDiscs::start(int row) {
     next_ = row;
+    place_nodes(grid_, row - radius(), viewpoint_, places_below_);
     for (int j = row - radius(); j < row + radius(); ++j) enter(j);
 }
 
@@ -53,7 +61,9 @@ void SmoothDiscs::enter(int j) {
     };
     const std::size_t first = grid_.index(0, j);
     links_.back() = 0;
-    link_nodes(grid_, first, first + 1, grid_.width - 1, links_.data());
+    std::swap(places_, places_below_);
+    const NodeRow nodes{grid_, first, places_, 0};
+    link_nodes(nodes, {grid_, first + 1, places_, 1}, grid_.width - 1, links_.data());
     std::fill_n(to.across.data(), words_, ~NodeBits{0});
     for (int w = 1; w < widths; ++w) {
         NodeBits* const words = eroded(to.across, w);
@@ -63,7 +73,8 @@ void SmoothDiscs::enter(int j) {
     }
     if (j + 1 >= grid_.height) return;
     NodeBits* const links = to.down.data();
-    link_nodes(grid_, first, grid_.index(0, j + 1), grid_.width, links);
+    place_nodes(grid_, j + 1, viewpoint_, places_below_);
+    link_nodes(nodes, {grid_, grid_.index(0, j + 1), places_below_, 0}, grid_.width, links);
     for (int w = 1; w < widths; ++w) {
         NodeBits* const words = eroded(to.down, w);
         std::copy_n(eroded(to.down, w - 1), words_, words);

@@ -15,7 +15,7 @@ class SmoothDiscs {
   public:
     /// A disc reaches `half_widths[d]` nodes to either side in the rows that are d away from its
     /// middle; they must not grow with d, nor exceed 63.
-    SmoothDiscs(const RidgeGrid& grid, std::vector<int> half_widths);
+    SmoothDiscs(const RidgeGrid& grid, const Viewpoint& viewpoint, std::vector<int> half_widths);
 
     int radius() const { return static_cast<int>(half_widths_.size()) - 1; }
 
@@ -36,10 +36,12 @@ class SmoothDiscs {
     void enter(int j);
 
     const RidgeGrid& grid_;
+    const Viewpoint& viewpoint_;
     std::vector<int> half_widths_;
     std::size_t words_;
     std::vector<Row> rows_;  ///< those that a disc meets
     std::vector<NodeBits> links_, nodes_;
+    NodePlaces places_, places_below_;  ///< of the row that is entered, and the next one
     int next_ = 0;
 };
 

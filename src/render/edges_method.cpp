@@ -164,7 +164,7 @@ FoundLines find_lines(const Edges& edges, WorkLoop& loop, RenderStats& stats) {
     if (edges.wants_faces()) found.faces.emplace(pipeline.scene, pipeline.settings.size, edges.q);
     std::optional<RidgeSearch> ridges;
     if (edges.wants_ridges()) {
-        ridges.emplace(pipeline, edges.q, edges.search_area());
+        ridges.emplace(pipeline, edges.viewpoint, edges.q, edges.search_area());
         loop.expect(ridges->items());
     }
     std::vector<std::unique_ptr<LineFinder>> finders(pool);

@@ -30,6 +30,18 @@ int step_of(int radius, int per_pixel) {
     return step;
 }
 
+/// Strides that the compiler knows make vector moves.
+template <class T>
+void copy_every(std::size_t stride, const T* from, std::size_t count, T* to) {
+    if (stride == 1) {
+        std::copy_n(from, count, to);
+    } else if (stride == 2) {
+        for (std::size_t i = 0; i < count; ++i) to[i] = from[2 * i];
+    } else {
+        for (std::size_t i = 0; i < count; ++i) to[i] = from[i * stride];
+    }
+}
+
 }  // namespace
 
 RidgeSettings ridge_settings(const Settings& settings) {
@@ -39,8 +51,10 @@ RidgeSettings ridge_settings(const Settings& settings) {
     return {static_cast<float>(turn), static_cast<float>(2.0 * turn)};
 }
 
-RidgeSearch::RidgeSearch(const Pipeline& pipeline, int per_pixel, const Tile& area)
+RidgeSearch::RidgeSearch(const Pipeline& pipeline, const Viewpoint& viewpoint, int per_pixel,
+                         const Tile& area)
     : pipeline_(pipeline),
+      viewpoint_(viewpoint),
       per_pixel_(per_pixel),
       step_(step_of(radius_of(pipeline, per_pixel), per_pixel)),
       pattern_(std::clamp((radius_of(pipeline, per_pixel) + step_ / 2) / step_, 2, 48),
@@ -97,15 +111,11 @@ void RidgeSearch::keep(const Tile& tile, const LatticeView& lattice) {
         for (int j = nodes.y0; j < nodes.y1; ++j) {
             const auto* source =
                 plane.data() + from.index(0, (y0_ + j) * step_ - from.y0) + first_column;
-            auto* target = to.data() + grid_.index(nodes.x0, j);
-            for (std::size_t i = 0; i < count; ++i) target[i] = source[i * step];
+            copy_every(step, source, count, to.data() + grid_.index(nodes.x0, j));
         }
     };
     copy_plane(from.id, grid_.id);
     if (!lattice.saw_anything) return;
-    copy_plane(from.px, grid_.px);
-    copy_plane(from.py, grid_.py);
-    copy_plane(from.pz, grid_.pz);
     copy_plane(from.nx, grid_.nx);
     copy_plane(from.ny, grid_.ny);
     copy_plane(from.nz, grid_.nz);
@@ -161,21 +171,17 @@ void RidgeSearch::trace(const Nodes& strip, Sampler& sampler) {
         }
         const std::uint32_t object = hits[k].object[lane];
         if (object == kNoObject || balls_[object]) continue;
-        put(nodes[sampler.order()[n]], sampler.packets()[k], hits[k], normals, lane);
+        put(nodes[sampler.order()[n]], hits[k], normals, lane);
         grid_.id[nodes[sampler.order()[n]]] = ids[lane];
     }
 }
 
-void RidgeSearch::put(std::size_t node, const RayPacket& rays, const HitPacket& hits,
-                      const NormalPacket& normals, int lane) {
-    const float t = hits.t[lane];
-    grid_.px[node] = rays.origin_x[lane] + t * rays.dir_x[lane];
-    grid_.py[node] = rays.origin_y[lane] + t * rays.dir_y[lane];
-    grid_.pz[node] = rays.origin_z[lane] + t * rays.dir_z[lane];
+void RidgeSearch::put(std::size_t node, const HitPacket& hits, const NormalPacket& normals,
+                      int lane) {
     grid_.nx[node] = normals.x[lane];
     grid_.ny[node] = normals.y[lane];
     grid_.nz[node] = normals.z[lane];
-    grid_.t[node] = t;
+    grid_.t[node] = hits.t[lane];
 }
 
 std::size_t RidgeSearch::bands() const {
@@ -187,7 +193,8 @@ void RidgeSearch::find(WorkLoop& loop, RenderStats& stats) {
     struct Worker {
         Worker(const RidgeSearch& search)
             : sampler(*search.pipeline_.frame, search.pipeline_.camera),
-              field(search.grid_, search.pattern_, ridge_settings(search.pipeline_.settings)) {}
+              field(search.grid_, search.viewpoint_, search.pattern_,
+                    ridge_settings(search.pipeline_.settings)) {}
         Sampler sampler;
         RidgeField field;
         RenderStats stats;

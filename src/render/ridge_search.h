@@ -36,7 +36,8 @@ struct LatticeView {
 class RidgeSearch {
   public:
     /// `per_pixel` lattice points along a pixel's side; `area` is what all tiles together cover.
-    RidgeSearch(const Pipeline& pipeline, int per_pixel, const Tile& area);
+    RidgeSearch(const Pipeline& pipeline, const Viewpoint& viewpoint, int per_pixel,
+                const Tile& area);
 
     /// Threads may keep different tiles at the same time.
     void keep(const Tile& tile, const LatticeView& lattice);
@@ -59,10 +60,10 @@ class RidgeSearch {
     void cut_rim();
     void amend(const Nodes& nodes, const LatticeView& lattice);
     void trace(const Nodes& strip, Sampler& sampler);
-    void put(std::size_t node, const RayPacket& rays, const HitPacket& hits,
-             const NormalPacket& normals, int lane);
+    void put(std::size_t node, const HitPacket& hits, const NormalPacket& normals, int lane);
 
     const Pipeline& pipeline_;
+    const Viewpoint& viewpoint_;
     int per_pixel_;
     int radius_;  ///< of a ridge's neighbourhood, lattice points
     int step_;    ///< lattice points from node to node
