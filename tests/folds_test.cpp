@@ -6,10 +6,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <optional>
 #include <random>
+#include <utility>
 #include <vector>
 
+#include "lines/bridges.h"
+#include "lines/line_gaps.h"
 #include "lines_world.h"
 
 namespace ink::test {
@@ -225,6 +229,98 @@ TEST(BrokenFold, IsMendedAlikeWhateverTheOrderOfItsPiecesAndByAnyNumberOfWorkers
     for (std::size_t k = 0; k < again.bridges.size(); ++k) {
         EXPECT_EQ(again.bridges[k].a, mended.repairs.bridges[k].a);
         EXPECT_EQ(again.bridges[k].b, mended.repairs.bridges[k].b);
+    }
+}
+
+/// A straight line in pieces from cell to cell.
+std::vector<Segment> straight(Vec2f a, Vec2f b, LineType type = LineType::crease) {
+    const std::vector<Vec2f> points = plane::cut_by_cells(a, b, 1.0F);
+    std::vector<Segment> line;
+    for (std::size_t n = 1; n < points.size(); ++n) {
+        Segment piece;
+        piece.a = points[n - 1];
+        piece.b = points[n];
+        piece.type = piece.type_at_b = type;
+        piece.left = piece.right = piece.owner = 1;
+        piece.spans_cell = true;
+        line.push_back(piece);
+    }
+    return line;
+}
+
+std::vector<Segment> operator+(std::vector<Segment> a, const std::vector<Segment>& b) {
+    a.insert(a.end(), b.begin(), b.end());
+    return a;
+}
+
+/// From (10, 10) in a direction, with a gap between two places.
+std::vector<Segment> broken_line(double angle_deg, float from, float to) {
+    const Vec2f way{static_cast<float>(std::cos(angle_deg * kDegrees)),
+                    static_cast<float>(std::sin(angle_deg * kDegrees))};
+    const Vec2f start{10.3F, 10.2F};
+    return straight(start, start + way * from) + straight(start + way * 40.0F, start + way * to);
+}
+
+TEST(GapOfALine, IsClosedByPiecesWithinCellsFromEndToEnd) {
+    for (double angle = 0.0; angle < 90.0; angle += 7.0) {
+        const std::vector<Segment> lines = broken_line(angle, 15.0F, 25.0F);
+        const std::vector<Segment> pieces = close_gaps(lines, {}, 1.0F, 3.0F);
+        double total = 0.0;
+        for (const Segment& piece : pieces) {
+            total += std::hypot(piece.b.x - piece.a.x, piece.b.y - piece.a.y);
+            const auto cell = [](float a, float b) { return std::floor((a + b) * 0.5F - 0.5F); };
+            for (const Vec2f end : {piece.a, piece.b}) {
+                EXPECT_NEAR(end.x, cell(piece.a.x, piece.b.x) + 1.0F, 0.5001F) << angle;
+                EXPECT_NEAR(end.y, cell(piece.a.y, piece.b.y) + 1.0F, 0.5001F) << angle;
+                const double off = (end.y - 10.2) * std::cos(angle * kDegrees) -
+                                   (end.x - 10.3) * std::sin(angle * kDegrees);
+                EXPECT_NEAR(off, 0.0, 0.01) << angle;
+            }
+        }
+        EXPECT_NEAR(total, 10.0, 0.01) << angle;
+        std::map<std::pair<float, float>, int> ends;
+        for (const Segment& s : lines + pieces) {
+            ++ends[{s.a.x, s.a.y}];
+            ++ends[{s.b.x, s.b.y}];
+        }
+        EXPECT_EQ(std::ranges::count(ends, 1, [](const auto& end) { return end.second; }), 2);
+    }
+}
+
+TEST(GapOfALine, StaysOpenWhereSomethingLiesBetweenOrTheEndsBelongToNoOneLine) {
+    const std::vector<Segment> lines = broken_line(20.0, 15.0F, 25.0F);
+    EXPECT_FALSE(close_gaps(lines, {}, 1.0F, 3.0F).empty());
+    // Wider than four widths, and than eight pixels.
+    EXPECT_TRUE(close_gaps(lines, {}, 1.0F, 2.0F).empty());
+    EXPECT_TRUE(close_gaps(broken_line(20.0, 15.0F, 28.0F), {}, 1.0F, 3.0F).empty());
+    // A bar, on both of whose sides the line ends.
+    const Vec2f end = lines[0].a + Vec2f{15.0F * 0.9397F, 15.0F * 0.3420F};
+    const auto across = [&](Vec2f p) {
+        return straight(p - Vec2f{-2.0F, 6.0F}, p + Vec2f{-2.0F, 6.0F}, LineType::silhouette);
+    };
+    EXPECT_TRUE(close_gaps(lines + across(end + Vec2f{5.0F, 2.0F}), {}, 1.0F, 3.0F).empty());
+    EXPECT_TRUE(close_gaps(lines + across(end), {}, 1.0F, 3.0F).empty());
+    // Lines of two things; side by side; one that fades out.
+    std::vector<Segment> other = lines;
+    for (Segment& s : other) s.owner = s.a.x > 30.0F ? 2 : 1;
+    EXPECT_TRUE(close_gaps(other, {}, 1.0F, 3.0F).empty());
+    std::vector<Segment> faint = lines;
+    for (Segment& s : faint) s.strength = s.a.x > 30.0F ? 0.2F : 1.0F;
+    EXPECT_TRUE(close_gaps(faint, {}, 1.0F, 3.0F).empty());
+    EXPECT_TRUE(close_gaps(straight({10.3F, 10.2F}, {25.0F, 10.2F}) +
+                               straight({30.3F, 14.2F}, {45.0F, 14.2F}),
+                           {}, 1.0F, 3.0F)
+                    .empty());
+}
+
+TEST(GapOfALine, IsClosedAlikeWhateverTheOrderOfTheSegments) {
+    std::vector<Segment> lines = broken_line(33.0, 15.0F, 24.0F);
+    const std::vector<Segment> pieces = close_gaps(lines, {}, 1.0F, 3.0F);
+    std::ranges::shuffle(lines, std::mt19937(1));
+    const std::vector<Segment> again = close_gaps(lines, {}, 1.0F, 3.0F);
+    ASSERT_EQ(pieces.size(), again.size());
+    for (std::size_t k = 0; k < pieces.size(); ++k) {
+        EXPECT_TRUE(pieces[k].a == again[k].a && pieces[k].b == again[k].b);
     }
 }
 

@@ -11,6 +11,7 @@
 #include <tuple>
 #include <utility>
 
+#include "lines/bridges.h"
 #include "lines/fold_doubles.h"
 #include "lines/segment_squares.h"
 
@@ -334,7 +335,8 @@ class FoldMender {
         std::ranges::sort(pairs);
         for (const auto [apart, k, n] : pairs) {
             if (ends_[k].reached != kNone || ends_[n].reached != kNone) continue;
-            std::vector<Vec2f> path = curve_between(ends_[k], ends_[n]);
+            std::vector<Vec2f> path = plane::curve_between(ends_[k].point, ends_[k].way,
+                                                           ends_[n].point, ends_[n].way, spacing_);
             if (!is_steep(ends_[k], path)) continue;
             ends_[k].path = std::move(path);
             ends_[k].reached = ends_[n].fold;
@@ -354,22 +356,6 @@ class FoldMender {
         const bool b_front = t.left_in_front == b.at_b;
         return s.owner == t.owner && a_front != b_front && root(a.fold) != root(b.fold) &&
                dot(a.way, way) > kAhead && dot(b.way, way) < -kAhead;
-    }
-
-    /// A cubic that leaves both ends as they point, in steps of about the lattice's spacing.
-    std::vector<Vec2f> curve_between(const LooseEnd& a, const LooseEnd& b) const {
-        const float apart = length(b.point - a.point);
-        const int steps = std::max(static_cast<int>(apart / spacing_), 1);
-        const Vec2f p = a.point + a.way * (apart / 3.0F);
-        const Vec2f q = b.point + b.way * (apart / 3.0F);
-        std::vector<Vec2f> path;
-        for (int k = 1; k <= steps; ++k) {
-            const float s = static_cast<float>(k) / static_cast<float>(steps);
-            const float r = 1.0F - s;
-            path.push_back(a.point * (r * r * r) + p * (3.0F * r * r * s) + q * (3.0F * r * s * s) +
-                           b.point * (s * s * s));
-        }
-        return path;
     }
 
     bool is_steep(const LooseEnd& end, std::span<const Vec2f> path) {
@@ -420,7 +406,7 @@ class FoldMender {
             smooth[n] = path[n] * 0.5F + (path[n - 1] + path[n + 1]) * 0.25F;
         }
         for (std::size_t n = 0; n + 1 < smooth.size(); ++n) {
-            cut_by_cells(end, smooth[n], smooth[n + 1], n + 2 == smooth.size());
+            add_pieces(end, smooth[n], smooth[n + 1], n + 2 == smooth.size());
         }
     }
 
@@ -433,35 +419,13 @@ class FoldMender {
     }
 
     /// Segments lie within cells and share their ends on the cells' sides.
-    void cut_by_cells(const LooseEnd& end, Vec2f a, Vec2f b, bool is_last) {
-        std::vector<float> cuts{0.0F, 1.0F};
-        const auto add_cuts = [&](float from, float to) {
-            const float low = std::min(from, to) / spacing_ - 0.5F;
-            const float high = std::max(from, to) / spacing_ - 0.5F;
-            for (float side = std::floor(low) + 1.0F; side < high; side += 1.0F) {
-                cuts.push_back(((side + 0.5F) * spacing_ - from) / (to - from));
-            }
-        };
-        add_cuts(a.x, b.x);
-        add_cuts(a.y, b.y);
-        std::ranges::sort(cuts);
-        Vec2f from = a;
-        for (std::size_t n = 1; n < cuts.size(); ++n) {
-            const bool whole = n + 1 == cuts.size();
-            const Vec2f to = whole ? b : a + (b - a) * cuts[n];
-            if (from == to) continue;
-            Segment segment = lines_[end.fold];
-            if (!end.at_b) segment.left_in_front = !segment.left_in_front;
-            segment.left_in_front_at_b = segment.left_in_front;
-            segment.a = from;
-            segment.b = to;
-            segment.type_at_b = segment.type;
-            segment.left_at_b = segment.left;
-            segment.right_at_b = segment.right;
-            segment.spans_cell = !(is_last && whole);
-            repairs_.bridges.push_back(segment);
+    void add_pieces(const LooseEnd& end, Vec2f a, Vec2f b, bool is_last) {
+        const std::vector<Vec2f> points = plane::cut_by_cells(a, b, spacing_);
+        for (std::size_t n = 1; n < points.size(); ++n) {
+            Segment piece = plane::piece_like(lines_[end.fold], end.at_b, points[n - 1], points[n]);
+            if (is_last && n + 1 == points.size()) piece.spans_cell = false;
+            repairs_.bridges.push_back(piece);
             owners_.push_back(end.fold);
-            from = to;
         }
     }
 

@@ -8,6 +8,7 @@
 
 #include "base/parallel.h"
 #include "lines/folds.h"
+#include "lines/line_gaps.h"
 #include "lines/tones.h"
 
 namespace ink {
@@ -45,11 +46,12 @@ void make_strokes(const Edges& edges, TileLines& tile) {
 
 void mend(const Edges& edges, std::vector<std::unique_ptr<LineFinder>>& finders,
           std::vector<TileLines>& found, std::vector<std::vector<Segment>>& toned) {
-    const auto is_fold = [](const Segment& segment) {
-        return segment.type == LineType::self_occlusion && segment.level == 0;
+    const auto may_break = [&](const Segment& segment) {
+        return segment.level == 0 && (segment.type == LineType::self_occlusion ||
+                                      (segment.type == LineType::crease && edges.has_meshes));
     };
     if (std::ranges::none_of(found, [&](const TileLines& tile) {
-            return std::ranges::any_of(tile.segments, is_fold);
+            return std::ranges::any_of(tile.segments, may_break);
         })) {
         return;
     }
@@ -71,11 +73,15 @@ void mend(const Edges& edges, std::vector<std::unique_ptr<LineFinder>>& finders,
                                finder->enter({low.x, low.y, high.x, high.y});
                            }});
     }
-    const FoldRepairs repairs =
+    FoldRepairs repairs =
         mend_folds(lines, edges.viewpoint, 1.0F / static_cast<float>(edges.q), width, workers,
                    [&](std::size_t count, const auto& body) {
                        parallel_for(count, static_cast<int>(workers.size()), body);
                    });
+    lines.insert(lines.end(), repairs.bridges.begin(), repairs.bridges.end());
+    const std::vector<Segment> pieces =
+        close_gaps(lines, repairs.crumbs, 1.0F / static_cast<float>(edges.q), width);
+    repairs.bridges.insert(repairs.bridges.end(), pieces.begin(), pieces.end());
     if (edges.tones) repair(edges, repairs, lines, toned);
     std::vector<bool> changed(found.size());
     // Last first, so that the places of the others stay what they are.
@@ -86,8 +92,7 @@ void mend(const Edges& edges, std::vector<std::unique_ptr<LineFinder>>& finders,
     }
     for (const Segment& bridge : repairs.bridges) {
         const std::size_t tile = edges.search_tile_at((bridge.a + bridge.b) * 0.5F);
-        found[tile].segments.push_back(bridge);
-        edges.apply_distance(found[tile].segments.back());
+        found[tile].segments.push_back(bridge);  // with the distance of the line that it is like
         changed[tile] = true;
     }
     for (std::size_t tile = 0; tile < found.size(); ++tile) {
