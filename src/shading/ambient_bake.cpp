@@ -406,7 +406,7 @@ class SeenBake final : public AmbientOcclusion {
         const HitPacket& hits = surface.hits;
         const int any = std::countr_zero(own);
         const bool spares =
-            bake_.ball_sky && (bake_.strings || radius_px(hits, any) < kLeastBallGrid);
+            bake_.ball_sky && !bake_.strings && radius_px(hits, any) < kLeastBallGrid;
         const std::uint32_t between = spares ? own & kBetween : 0U;
         for_lanes(own & ~between, [&](int i) { open[i] = at(surface, i); });
         for_lanes(between, [&](int i) {
