@@ -171,26 +171,14 @@ void ClusterBands::Cover::add(const Window& bounds) {
               });
 }
 
-bool ClusterBands::Cover::meets(const Window& box) const {
-    // Bounds are wider than what they bound, so that what only touches a box from outside does not
-    // count.
-    constexpr float kInside = 1e-3F;
-    const int left = columns_.band(box.left);
-    const int right = columns_.band(box.right - kInside);
-    const int top = rows_.band(box.top);
-    const int bottom = rows_.band(box.bottom - kInside);
-    const auto has = [&](int row, int column) {
-        const auto word =
-            static_cast<std::size_t>(row) * words_ + static_cast<std::size_t>(column) / 64;
-        return (cells_[word] >> static_cast<unsigned>(column % 64) & 1U) != 0;
-    };
-    if (left == right && top == bottom) return has(top, left);  // a block of pixels
-    for (int row = top; row <= bottom; ++row) {
-        for (int column = left; column <= right; ++column) {
-            if (has(row, column)) return true;
+bool ClusterBands::Cover::any(int left, int right, int top, int bottom) const {
+    bool found = false;
+    for_words(left, right, [&](std::size_t word, std::uint64_t bits) {
+        for (int row = top; row <= bottom && !found; ++row) {
+            found = (cells_[static_cast<std::size_t>(row) * words_ + word] & bits) != 0;
         }
-    }
-    return false;
+    });
+    return found;
 }
 
 }  // namespace ink

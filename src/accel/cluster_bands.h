@@ -51,9 +51,24 @@ class ClusterBands {
       public:
         explicit Cover(Vec2f centre);
         void add(const Window& bounds);
-        bool meets(const Window& box) const;
+        bool meets(const Window& box) const {
+            // Bounds are wider than what they bound, so that what only touches a box from outside
+            // does not count.
+            constexpr float kInside = 1e-3F;
+            const int left = columns_.band(box.left);
+            const int right = columns_.band(box.right - kInside);
+            const int top = rows_.band(box.top);
+            const int bottom = rows_.band(box.bottom - kInside);
+            if (((left ^ right) | (top ^ bottom)) != 0) return any(left, right, top, bottom);
+            // A block of pixels.
+            const auto column = static_cast<std::size_t>(left);
+            const std::uint64_t word = cells_[static_cast<std::size_t>(top) * words_ + column / 64];
+            return (word >> column % 64 & 1U) != 0;
+        }
 
       private:
+        bool any(int left, int right, int top, int bottom) const;
+
         Axis columns_, rows_;
         std::size_t words_;  ///< a row
         std::vector<std::uint64_t> cells_;

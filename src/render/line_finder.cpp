@@ -90,6 +90,15 @@ void LineFinder::lay_blocks() {
     block_at_.clear();
     blocks_.clear();
     for (int j = 0; j < rows_in_blocks_; j += kBlockSide) {
+        // Most rows without anything are told by one question.
+        const ScreenBox first = screen_box({grid_.x0, grid_.y0 + j}, grid_.spacing);
+        const ScreenBox last =
+            screen_box({grid_.x0 + columns_in_blocks_ - 1, grid_.y0 + j}, grid_.spacing);
+        if (!sampler_.reaches({first.left, first.top, last.right, first.bottom})) {
+            block_at_.resize(block_at_.size() + static_cast<std::size_t>(blocks_across_),
+                             kEmptyBlock);
+            continue;
+        }
         for (int i = 0; i < columns_in_blocks_; i += kBlockSide) {
             block_at_.push_back(
                 lay_block({grid_.x0 + i, grid_.y0 + j, std::min(kBlockSide, columns_in_blocks_ - i),

@@ -19,13 +19,16 @@ void sort_blocks(const Tile& tile, const Sampler& sampler, float reach,
                  std::vector<Block>& near_scene, std::vector<Block>& empty) {
     near_scene.clear();
     empty.clear();
+    const auto reaches = [&](int x, int y, int end) {
+        const auto top = static_cast<float>(y);
+        return sampler.reaches({static_cast<float>(x) - reach, top - reach,
+                                static_cast<float>(end) + reach, top + kBlockSide + reach});
+    };
     for (int y = tile.y0; y < tile.y1; y += kBlockSide) {
+        // Most rows without anything are told by one question.
+        const bool any = reaches(tile.x0, y, tile.x1 + kBlockSide - 1);
         for (int x = tile.x0; x < tile.x1; x += kBlockSide) {
-            const auto left = static_cast<float>(x);
-            const auto top = static_cast<float>(y);
-            const bool near = sampler.reaches(
-                {left - reach, top - reach, left + kBlockSide + reach, top + kBlockSide + reach});
-            (near ? near_scene : empty).push_back({x, y});
+            (any && reaches(x, y, x + kBlockSide) ? near_scene : empty).push_back({x, y});
         }
     }
 }
