@@ -9,6 +9,7 @@
 #include <cmath>
 #include <functional>
 #include <numbers>
+#include <numeric>
 #include <string>
 #include <utility>
 #include <variant>
@@ -17,6 +18,7 @@
 #include "lines/ridge_field.h"
 #include "lines/short_ridges.h"
 #include "lines/smooth_discs.h"
+#include "render/draft.h"
 #include "render/line_mask.h"
 #include "render/render.h"
 #include "sampling/stencil.h"
@@ -329,6 +331,38 @@ TEST(Ridges, AtTheRimOfAPictureAreThoseOfALargerOne) {
         }
         EXPECT_GT(inked, kSmall) << "no ridge from one side to the other";
         EXPECT_LT(worst, 0.02) << scale_px << " pixels";
+    }
+}
+
+TEST(Ridges, StayInTheirPlacesAndWidthsInDrafts) {
+    const Scene scene({exact({{180, 70, 170}, 0.25})});
+    const auto tracer = make_tracer(scene);
+    Settings settings;
+    settings.size = {601, 600};
+    settings.view.view = View::front;
+    settings.view.eye = Vec3d{0, 0, 1000};
+    settings.view.look_at = Vec3d{0, 0, 0};
+    settings.view.orthographic = 400;
+    settings.compose = Compose::lines;
+    settings.ridge_scale = {8.0, Length::Unit::px};
+    settings.ridge_turn_deg = 0.5;
+    settings.lines = {};
+    settings.lines.add(LineType::ridge);
+    const auto ink_of = [](const Film& film) {
+        std::vector<double> ink;
+        for (const std::uint32_t pixel : film.display().pixels) ink.push_back(255 - (pixel & 255U));
+        return ink;
+    };
+    const std::vector<double> full = ink_of(render(scene, *tracer, settings));
+    const double total = std::accumulate(full.begin(), full.end(), 0.0);
+    ASSERT_GT(total, 255 * 400) << "no ridge across most of the picture";
+    for (const double share : {0.75, 0.5, 0.375, 0.25}) {
+        const std::vector<double> draft = ink_of(render_draft(scene, *tracer, settings, share));
+        EXPECT_NEAR(std::accumulate(draft.begin(), draft.end(), 0.0), total, 0.03 * total) << share;
+        double elsewhere = 0.0;
+        for (std::size_t k = 0; k < full.size(); ++k) elsewhere += std::abs(draft[k] - full[k]);
+        // Half a pixel beside its place, a line of two pixels has half of its ink elsewhere.
+        EXPECT_LT(elsewhere, 0.5 * total) << share;
     }
 }
 

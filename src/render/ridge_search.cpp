@@ -22,11 +22,11 @@ int radius_of(const Pipeline& pipeline, int per_pixel) {
                     static_cast<int>(std::lround(pipeline.settings.ridge_scale_px() * per_pixel)));
 }
 
-/// Nodes two pixels apart, or fewer lattice points if the neighbourhood would be less than four
+/// Nodes two pixels apart, or fewer lattice points if the neighbourhood would be less than three
 /// nodes in radius; there are four in a pixel at most.
 int step_of(int radius, int per_pixel) {
     int step = 2 * per_pixel;
-    while (step > 1 && radius < 4 * step && step > per_pixel / 2) step /= 2;
+    while (step > 1 && radius < 3 * step && step > per_pixel / 2) step /= 2;
     return step;
 }
 
