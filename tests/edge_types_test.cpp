@@ -422,6 +422,8 @@ TEST(HollowOfATorus, IsHiddenUpToTheCuspOfItsRim) {
             const Scene scene({torus_object(ring, 0.5 * ring, tilt)});
             // The cusp is in the middle of the picture.
             Settings settings = plan_view(size);
+            // Thin lines: a fold shorter than two and a half widths would be left out as a hair.
+            set(settings, "line-width", "1px");
             settings.view.eye = Vec3d{cusp.x, -cusp.y, 10 * ring};
             settings.view.look_at = Vec3d{cusp.x, -cusp.y, 0};
             Drawing drawing;
