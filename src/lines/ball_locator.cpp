@@ -1,7 +1,10 @@
 #include "lines/ball_locator.h"
 
 #include <algorithm>
+#include <bit>
 #include <optional>
+
+#include "base/multiversion.h"
 
 namespace ink {
 
@@ -11,111 +14,140 @@ constexpr auto kFirstLimb = static_cast<std::int32_t>(Prediction::Kind::first_li
 constexpr auto kSecondLimb = static_cast<std::int32_t>(Prediction::Kind::second_limb);
 constexpr auto kGap = static_cast<std::int32_t>(Prediction::Kind::gap);
 
-void put(const BallHit& hit, BallLanes& lanes, int lane) {
-    lanes.x[lane] = hit.ball.centre.x;
-    lanes.y[lane] = hit.ball.centre.y;
-    lanes.z[lane] = hit.ball.centre.z;
-    lanes.radius[lane] = hit.ball.radius;
-    lanes.t[lane] = hit.t;
+Ball ball_of(const BallLanes& balls, int lane) {
+    return {{balls.x[lane], balls.y[lane], balls.z[lane]}, balls.radius[lane]};
 }
 
-Sample sample_of(const BallHit& hit) {
+Sample sample_of(GeometryId id, const BallLanes& balls, int lane) {
     Sample sample;
-    sample.id = hit.id;
-    sample.t = hit.t;
-    sample.ball = hit.ball;
+    sample.id = id;
+    sample.t = balls.t[lane];
+    sample.ball = ball_of(balls, lane);
     return sample;
+}
+
+/// The places at which rays are to confirm predictions.
+struct CheckLanes {
+    Lanes<float> x, y;
+    Lanes<std::int32_t> wanted;  ///< 1, or 0 where none is
+};
+
+/// needs_check and checked_place, for sixteen edges at once.
+INKTRACE_MULTIVERSION
+void find_checks(float offset, float least_squared, const EdgeLanes& edges,
+                 const PredictionLanes& predictions, CheckLanes& checks) {
+    for (int i = 0; i < kLanes; ++i) {
+        const std::int32_t kind = predictions.kind[i];
+        const float at = predictions.at[i];
+        const float before = at - offset;
+        const float after = at + offset;
+        const bool known =
+            (kind == kFirstLimb && after >= 1.0F) || (kind == kSecondLimb && at <= offset);
+        const bool large = predictions.squared_radius[i] >= least_squared;
+        checks.wanted[i] = kind >= 0 && !known && large ? 1 : 0;
+        const float place = kind == kFirstLimb ? after : kind == kSecondLimb ? before : at;
+        checks.x[i] = edges.ax[i] + (edges.bx[i] - edges.ax[i]) * place;
+        checks.y[i] = edges.ay[i] + (edges.by[i] - edges.ay[i]) * place;
+    }
 }
 
 }  // namespace
 
-void BallLocator::locate(const SampleGrid& grid, std::span<const SuspectEdge> suspects,
-                         std::span<const BallEdge> edges, const IdentifyFunction& identify,
-                         std::vector<Crossing>& crossings, std::vector<std::uint32_t>& left) {
-    if (edges.empty()) return;
-    predict(grid, suspects, edges);
-    check(edges, identify);
-    Crossing crossing;
-    for (std::size_t k = 0; k < edges.size(); ++k) {
-        const auto lane = static_cast<int>(k % kLanes);
-        if (predictions_[k / kLanes].kind[lane] < 0) {
-            left.push_back(edges[k].edge);
-            continue;
-        }
-        crossing.edge = edges[k].edge;
-        const PredictedSide first{edges[k].first.id, edges[k].first.t, edges[k].first.ball};
-        const PredictedSide second{edges[k].second.id, edges[k].second.t, edges[k].second.ball};
-        if (cross_as_predicted(viewpoint_, settings_, prediction(k), from_[k], to_[k], first,
-                               second, crossing)) {
-            crossings.push_back(crossing);
-        }
-    }
-}
-
-void BallLocator::predict(const SampleGrid& grid, std::span<const SuspectEdge> suspects,
-                          std::span<const BallEdge> edges) {
-    predictions_.resize((edges.size() + kLanes - 1) / kLanes);
-    from_.resize(edges.size());
-    to_.resize(edges.size());
-    for (std::size_t first = 0; first < edges.size(); first += kLanes) {
-        const std::size_t count = std::min<std::size_t>(kLanes, edges.size() - first);
-        for (std::size_t i = 0; i < kLanes; ++i) {
-            // Unused lanes repeat the last edge.
-            const std::size_t k = first + std::min(i, count - 1);
-            const SuspectEdge& suspect = suspects[edges[k].edge];
-            const auto lane = static_cast<int>(i);
-            from_[k] = grid.point(suspect.i, suspect.j);
-            to_[k] = suspect.down ? grid.point(suspect.i, suspect.j + 1)
-                                  : grid.point(suspect.i + 1, suspect.j);
-            lanes_.ax[lane] = from_[k].x;
-            lanes_.ay[lane] = from_[k].y;
-            lanes_.bx[lane] = to_[k].x;
-            lanes_.by[lane] = to_[k].y;
-            put(edges[k].first, lanes_.first, lane);
-            put(edges[k].second, lanes_.second, lane);
-        }
-        predict_crossings(viewpoint_, lanes_, predictions_[first / kLanes]);
-    }
-    for (std::size_t k = 0; k < edges.size(); ++k) {
-        const std::int32_t kind = predictions_[k / kLanes].kind[static_cast<int>(k % kLanes)];
-        if (kind == PredictionLanes::kSearch) search(edges[k], k);
-    }
-}
-
-void BallLocator::search(const BallEdge& edge, std::size_t k) {
-    const std::optional<Prediction> found = predict_crossing(
-        viewpoint_, from_[k], sample_of(edge.first), to_[k], sample_of(edge.second));
-    PredictionLanes& lanes = predictions_[k / kLanes];
-    const auto lane = static_cast<int>(k % kLanes);
-    lanes.kind[lane] = found ? static_cast<std::int32_t>(found->kind) : PredictionLanes::kNone;
-    if (!found) return;
-    lanes.at[lane] = found->at;
-    lanes.t[lane] = found->t;
-    lanes.squared_radius[lane] = found->squared_radius;
-}
-
-/// Predictions that a ray beside them does not confirm become none.
-void BallLocator::check(std::span<const BallEdge> edges, const IdentifyFunction& identify) {
+void BallLocator::locate(const IdentifyFunction& identify, std::vector<Crossing>& crossings,
+                         std::vector<std::uint32_t>& left) {
+    if (count_ == 0) return;
     checked_.clear();
     points_.clear();
-    for (std::size_t k = 0; k < edges.size(); ++k) {
-        PredictionLanes& lanes = predictions_[k / kLanes];
-        std::int32_t& kind = lanes.kind[static_cast<int>(k % kLanes)];
-        if (kind < 0 || !needs_check(settings_, prediction(k))) continue;
+    const auto used_of = [&](std::size_t number) {
+        return static_cast<int>(std::min<std::size_t>(kLanes, count_ - number * kLanes));
+    };
+    const std::size_t batches = (count_ + kLanes - 1) / kLanes;
+    for (std::size_t number = 0; number < batches; ++number) {
+        Batch& batch = batches_[number];
+        predict_crossings(viewpoint_, batch.lanes, batch.predictions);
+        const int used = used_of(number);
+        for (int lane = 0; lane < used; ++lane) {
+            if (batch.predictions.kind[lane] == PredictionLanes::kSearch) search(batch, lane);
+        }
+        list_checks(number, used);
+    }
+    seen_.resize(points_.size());
+    identify(points_, seen_);
+    confirm();
+
+    crossings.reserve(crossings.size() + count_);
+    Crossing crossing;
+    for (std::size_t number = 0; number < batches; ++number) {
+        const Batch& batch = batches_[number];
+        const EdgeLanes& lanes = batch.lanes;
+        const PredictionLanes& found = batch.predictions;
+        for (int lane = 0; lane < used_of(number); ++lane) {
+            crossing.edge = batch.edge[lane];
+            if (found.kind[lane] < 0) {
+                left.push_back(crossing.edge);
+                continue;
+            }
+            const Prediction prediction{static_cast<Prediction::Kind>(found.kind[lane]),
+                                        found.at[lane], found.t[lane], found.squared_radius[lane]};
+            const PredictedSide first{batch.first.id[lane], lanes.first.t[lane],
+                                      ball_of(lanes.first, lane)};
+            const PredictedSide second{batch.second.id[lane], lanes.second.t[lane],
+                                       ball_of(lanes.second, lane)};
+            if (cross_as_predicted(viewpoint_, settings_, prediction,
+                                   {lanes.ax[lane], lanes.ay[lane]},
+                                   {lanes.bx[lane], lanes.by[lane]}, first, second, crossing)) {
+                crossings.push_back(crossing);
+            }
+        }
+    }
+}
+
+void BallLocator::search(Batch& batch, int lane) const {
+    const EdgeLanes& lanes = batch.lanes;
+    const std::optional<Prediction> found = predict_crossing(
+        viewpoint_, {lanes.ax[lane], lanes.ay[lane]},
+        sample_of(batch.first.id[lane], lanes.first, lane), {lanes.bx[lane], lanes.by[lane]},
+        sample_of(batch.second.id[lane], lanes.second, lane));
+    PredictionLanes& predictions = batch.predictions;
+    predictions.kind[lane] =
+        found ? static_cast<std::int32_t>(found->kind) : PredictionLanes::kNone;
+    if (!found) return;
+    predictions.at[lane] = found->at;
+    predictions.t[lane] = found->t;
+    predictions.squared_radius[lane] = found->squared_radius;
+}
+
+/// Adds the checks of a batch to those that wait for their rays.
+void BallLocator::list_checks(std::size_t number, int used) {
+    Batch& batch = batches_[number];
+    CheckLanes checks;
+    find_checks(settings_.check_offset, settings_.least_checked * settings_.least_checked,
+                batch.lanes, batch.predictions, checks);
+    std::uint32_t wanted = 0;
+    for (int lane = 0; lane < kLanes; ++lane) {
+        wanted |= static_cast<std::uint32_t>(checks.wanted[lane]) << lane;
+    }
+    for (wanted &= (1U << used) - 1; wanted != 0; wanted &= wanted - 1) {
+        const int lane = std::countr_zero(wanted);
+        std::int32_t& kind = batch.predictions.kind[lane];
         if (kind == kGap) {
             kind = PredictionLanes::kNone;  // two crossings, which Locator finds
             continue;
         }
-        checked_.push_back(static_cast<std::uint32_t>(k));
-        points_.push_back(from_[k] + (to_[k] - from_[k]) * checked_place(settings_, prediction(k)));
+        checked_.push_back(static_cast<std::uint32_t>(number * kLanes) +
+                           static_cast<std::uint32_t>(lane));
+        points_.push_back({checks.x[lane], checks.y[lane]});
     }
-    seen_.resize(points_.size());
-    identify(points_, seen_);
+}
+
+/// Predictions that the ray beside them does not confirm become none.
+void BallLocator::confirm() {
     for (std::size_t n = 0; n < checked_.size(); ++n) {
-        const std::size_t k = checked_[n];
-        std::int32_t& kind = predictions_[k / kLanes].kind[static_cast<int>(k % kLanes)];
-        const bool as_first = seen_[n] == edges[k].first.surface;
-        const bool as_second = seen_[n] == edges[k].second.surface;
+        Batch& batch = batches_[checked_[n] / kLanes];
+        const auto lane = static_cast<int>(checked_[n] % kLanes);
+        std::int32_t& kind = batch.predictions.kind[lane];
+        const bool as_first = seen_[n] == batch.first.surface(lane);
+        const bool as_second = seen_[n] == batch.second.surface(lane);
         const bool confirmed = kind == kFirstLimb    ? as_second
                                : kind == kSecondLimb ? as_first
                                                      : as_first || as_second;

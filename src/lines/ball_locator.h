@@ -20,12 +20,6 @@ struct BallHit {
     Ball ball{};     ///< of radius 0: the background
 };
 
-/// A suspect edge both of whose ends see balls or the background, and not the same.
-struct BallEdge {
-    std::uint32_t edge;  ///< index of the suspect edge
-    BallHit first, second;
-};
-
 /// Locates what Locator would between balls, sixteen edges at a time and without samples of its
 /// own: a crossing is computed, and one ray beside it asked what it hits. What that does not settle
 /// is left to Locator.
@@ -34,28 +28,59 @@ class BallLocator {
     BallLocator(const Viewpoint& viewpoint, const LocateSettings& settings)
         : viewpoint_(viewpoint), settings_(settings) {}
 
-    /// Adds crossings, and to `left` the suspect edges that are left.
-    void locate(const SampleGrid& grid, std::span<const SuspectEdge> suspects,
-                std::span<const BallEdge> edges, const IdentifyFunction& identify,
-                std::vector<Crossing>& crossings, std::vector<std::uint32_t>& left);
+    void begin() { count_ = 0; }
+    /// Takes suspect edge number `edge`, from screen point a to b, both of whose ends see balls or
+    /// the background, and not the same.
+    void add(std::uint32_t edge, Vec2f a, Vec2f b, const BallHit& first, const BallHit& second) {
+        const auto lane = static_cast<int>(count_ % kLanes);
+        if (count_ / kLanes == batches_.size()) batches_.emplace_back();
+        Batch& batch = batches_[count_ / kLanes];
+        ++count_;
+        batch.edge[lane] = edge;
+        batch.lanes.ax[lane] = a.x;
+        batch.lanes.ay[lane] = a.y;
+        batch.lanes.bx[lane] = b.x;
+        batch.lanes.by[lane] = b.y;
+        put(first, lane, batch.lanes.first, batch.first);
+        put(second, lane, batch.lanes.second, batch.second);
+    }
+    /// Adds crossings, and to `left` the edges that are left, in the order in which they came.
+    void locate(const IdentifyFunction& identify, std::vector<Crossing>& crossings,
+                std::vector<std::uint32_t>& left);
 
   private:
-    void predict(const SampleGrid& grid, std::span<const SuspectEdge> suspects,
-                 std::span<const BallEdge> edges);
-    void search(const BallEdge& edge, std::size_t k);
-    void check(std::span<const BallEdge> edges, const IdentifyFunction& identify);
-    Prediction prediction(std::size_t k) const {
-        const PredictionLanes& lanes = predictions_[k / kLanes];
-        const auto lane = static_cast<int>(k % kLanes);
-        return {static_cast<Prediction::Kind>(lanes.kind[lane]), lanes.at[lane], lanes.t[lane],
-                lanes.squared_radius[lane]};
+    /// What the ends of sixteen edges saw, beside the balls themselves.
+    struct Ends {
+        Lanes<GeometryId> id;
+        Lanes<std::uint32_t> object, primitive;
+
+        SurfaceKey surface(int lane) const { return {object[lane], primitive[lane]}; }
+    };
+    struct Batch {
+        EdgeLanes lanes;
+        Ends first, second;
+        Lanes<std::uint32_t> edge;
+        PredictionLanes predictions;
+    };
+
+    static void put(const BallHit& hit, int lane, BallLanes& balls, Ends& ends) {
+        balls.x[lane] = hit.ball.centre.x;
+        balls.y[lane] = hit.ball.centre.y;
+        balls.z[lane] = hit.ball.centre.z;
+        balls.radius[lane] = hit.ball.radius;
+        balls.t[lane] = hit.t;
+        ends.id[lane] = hit.id;
+        ends.object[lane] = hit.surface.object;
+        ends.primitive[lane] = hit.surface.primitive;
     }
+    void search(Batch& batch, int lane) const;
+    void list_checks(std::size_t number, int used);
+    void confirm();
 
     Viewpoint viewpoint_;
     LocateSettings settings_;
-    EdgeLanes lanes_;
-    std::vector<PredictionLanes> predictions_;
-    std::vector<Vec2f> from_, to_;  ///< ends of the edges, pixels
+    std::vector<Batch> batches_;  ///< they are kept for the next edges
+    std::size_t count_ = 0;
     std::vector<std::uint32_t> checked_;
     std::vector<Vec2f> points_;
     std::vector<SurfaceKey> seen_;

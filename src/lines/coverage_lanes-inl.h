@@ -55,6 +55,8 @@ class SquareCoverage {
         slope_ = hn::Div(set(1.0F), wide);
         corner_ = hn::Div(half, hn::Max(hn::Mul(wide, narrow), set(1e-6F)));
     }
+    /// From the middle of a square to the farthest edge that touches it.
+    HWY_INLINE Number reach() const { return reach_; }
     HWY_INLINE Number operator()(Number inside) const {
         const Number off = hn::Min(hn::Abs(inside), reach_);
         const Number rest = hn::Sub(reach_, off);

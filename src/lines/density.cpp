@@ -99,6 +99,30 @@ void LineDensity::at(std::span<const Vec2f> points, std::span<float> shares) con
     shares_at(raster(), points, shares);
 }
 
+float LineDensity::most_within(Vec2f lower, Vec2f upper) const {
+    const Raster r = raster();
+    const auto first = [&](float at, float shift, int least, int most) {
+        const float place = (at * r.shrink + shift) * r.per_square - 0.5F;
+        return std::clamp(static_cast<int>(std::floor(place)), least, most);
+    };
+    const int i0 = first(lower.x, r.shift.x, r.i0, r.i1);
+    const int j0 = first(lower.y, r.shift.y, r.j0, r.j1);
+    const int i1 = first(upper.x, r.shift.x, r.i0, r.i1) + 1;
+    const int j1 = first(upper.y, r.shift.y, r.j0, r.j1) + 1;
+    // A mean of squares in proportion is no denser than the densest of them.
+    float most = 0.0F;
+    for (int j = j0; j <= j1; ++j) {
+        for (int i = i0; i <= i1; ++i) {
+            const Square& here = squares_[square(i, j)];
+            if (here.searched > 0.0F) most = std::max(most, here.inked / here.searched);
+            // What is inked where nothing was searched belongs to its neighbours.
+            if (here.searched <= 0.0F && here.inked > 0.0F) return kInfinity;
+        }
+    }
+    constexpr float kRounding = 1e-4F;
+    return most * (1.0F + kRounding);
+}
+
 void LineDensity::enlarge(float factor, Vec2f middle_before, Vec2f middle_after) {
     shrink_ = 1.0F / factor;
     shift_ = middle_before - middle_after * shrink_;
@@ -130,9 +154,12 @@ INKTRACE_INLINE float decay(float x) {
 
 namespace {
 
+/// Up to this share lines keep their width; from here on they approach `most`, with no kink
+/// between.
+INKTRACE_INLINE float free_share(float most) { return 0.8F * most; }
+
 INKTRACE_INLINE float scale_of(float share, float most) {
-    // Up to here lines keep their width; from here on they approach `most`, with no kink between.
-    const float free = 0.8F * most;
+    const float free = free_share(most);
     const float room = most - free;
     const float dense = std::max(share, free);
     const float scale = (free + room * (1.0F - decay((dense - free) / room))) / dense;
@@ -155,7 +182,13 @@ float LineThinning::scale_at(Vec2f point, int level) const {
 }
 
 void LineThinning::scales_at(std::span<const Vec2f> points, std::span<float> scales) const {
-    if (most >= 1.0F) {
+    Vec2f lower{kInfinity, kInfinity};
+    Vec2f upper{-kInfinity, -kInfinity};
+    for (const Vec2f p : points) {
+        lower = {std::min(lower.x, p.x), std::min(lower.y, p.y)};
+        upper = {std::max(upper.x, p.x), std::max(upper.y, p.y)};
+    }
+    if (most >= 1.0F || points.empty() || direct.most_within(lower, upper) <= free_share(most)) {
         std::ranges::fill(scales, 1.0F);
         return;
     }

@@ -47,6 +47,8 @@ class LineDensity {
     float at(Vec2f point) const;
     /// The same about many places.
     void at(std::span<const Vec2f> points, std::span<float> shares) const;
+    /// An upper bound of it over all places from one to another.
+    float most_within(Vec2f lower, Vec2f upper) const;
     /// From now on, places are those of a picture `factor` times as large.
     void enlarge(float factor, Vec2f middle_before, Vec2f middle_after);
 

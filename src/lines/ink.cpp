@@ -116,17 +116,46 @@ void InkTile::draw_waiting() {
 
 /// Clears it.
 void InkTile::start(Layer& layer) {
+    const std::size_t stride = across_ * kBlockSide + kBlockSide - 1;
+    const std::size_t pixels = stride * (blocks() / across_ * kBlockSide + kBlockSide - 1);
     layer.coverage.assign(blocks(), {});
+    layer.narrow.assign(pixels, 0.0F);
     // What lies on top matters only where inks differ.
-    if (layers_.size() > 1) layer.t.assign(blocks(), Lanes<float>::filled(kInfinity));
+    const bool alone = layers_.size() == 1;
+    if (!alone) layer.t.assign(blocks(), Lanes<float>::filled(kInfinity));
+    if (!alone) layer.narrow_t.assign(pixels, kInfinity);
     layer.planes = {static_cast<float>(x0_) + 0.5F,
                     static_cast<float>(y0_) + 0.5F,
                     across_,
                     layer.coverage.data(),
-                    layer.t.empty() ? nullptr : layer.t.data(),
-                    touched_.data()};
+                    alone ? nullptr : layer.t.data(),
+                    touched_.data(),
+                    layer.narrow.data(),
+                    alone ? nullptr : layer.narrow_t.data(),
+                    stride};
     layer.used = true;
     empty_ = false;
+}
+
+/// Brings together what narrow strokes and all else ink.
+void InkTile::add_narrow(Layer& layer) const {
+    const std::size_t stride = layer.planes.stride;
+    for (std::size_t k = 0; k < blocks(); ++k) {
+        if (touched_[k] == 0) continue;
+        const std::size_t first = k / across_ * kBlockSide * stride + k % across_ * kBlockSide;
+        for (std::size_t row = 0; row < kBlockSide; ++row) {
+            const std::size_t at = first + row * stride;
+            float* const coverage = layer.coverage[k].data() + row * kBlockSide;
+            for (std::size_t i = 0; i < kBlockSide; ++i) {
+                coverage[i] = std::max(coverage[i], layer.narrow[at + i]);
+            }
+            if (layer.t.empty()) continue;
+            float* const t = layer.t[k].data() + row * kBlockSide;
+            for (std::size_t i = 0; i < kBlockSide; ++i) {
+                t[i] = std::min(t[i], layer.narrow_t[at + i]);
+            }
+        }
+    }
 }
 
 void InkTile::draw_faces(int x, int y, const Lanes<float>& distance, const Lanes<float>& nx,
@@ -152,8 +181,10 @@ void InkTile::finish() {
     draw_waiting();
     if (empty_) return;
     used_.clear();
-    for (const Layer& layer : layers_) {
-        if (layer.used) used_.push_back(&layer);
+    for (Layer& layer : layers_) {
+        if (!layer.used) continue;
+        add_narrow(layer);
+        used_.push_back(&layer);
     }
     alpha_.resize(blocks());
     if (used_.size() == 1) return finish_alone(*used_.front());

@@ -113,7 +113,8 @@ class InkTile {
         bool used = false;
         std::vector<Lanes<float>> coverage;
         std::vector<Lanes<float>> t;  ///< of the nearest line that inks the pixel, if it matters
-        InkPlanes planes{};           ///< these, for strokes
+        std::vector<float> narrow, narrow_t;  ///< see InkPlanes
+        InkPlanes planes{};                   ///< these, for strokes
     };
 
     Layer& layer_of(std::size_t style) {
@@ -122,6 +123,7 @@ class InkTile {
         return layer;
     }
     void start(Layer& layer);
+    void add_narrow(Layer& layer) const;
     void draw_waiting();
     void finish_alone(const Layer& layer);
     void finish_pixel(std::size_t k, std::span<const Layer* const> used);

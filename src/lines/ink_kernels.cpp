@@ -1,5 +1,6 @@
 #include "lines/ink_kernels.h"
 
+#include <algorithm>
 #include <cmath>
 
 // Everything between the two namespace macros is built once for each instruction set.
@@ -39,7 +40,7 @@ using Integers = hn::RebindToSigned<Floats>;
 constexpr Integers kIntegers;
 using Integer = hn::Vec<Integers>;
 
-/// Strokes as straight bands, and the blocks of the tile that each may ink.
+/// Strokes as straight bands, and the pixels of the tile that each may ink.
 struct Bands {
     Lanes<float> along_x, along_y;  ///< unit directions
     Lanes<float> length, half;      ///< half: of the width
@@ -47,21 +48,22 @@ struct Bands {
     Lanes<std::int32_t> left, right, top, bottom;  ///< inclusive; maybe none
 };
 
-/// Blocks in one direction that have a pixel's centre within `reach` of both ends of a stroke.
-HWY_INLINE void find_blocks(Number a, Number b, Number reach, float first_centre, int size, int i,
+/// Pixels in one direction whose centre lies within `reach` of a stroke's ends.
+HWY_INLINE void find_pixels(Number a, Number b, Number reach, float first_centre, int size, int i,
                             Lanes<std::int32_t>& first, Lanes<std::int32_t>& last) {
     const Number low = hn::Sub(hn::Sub(hn::Min(a, b), reach), set(first_centre));
     const Number high = hn::Sub(hn::Add(hn::Max(a, b), reach), set(first_centre));
     const Integer low_pixel = hn::Max(hn::ConvertTo(kIntegers, hn::Ceil(low)), hn::Zero(kIntegers));
     const Integer high_pixel =
         hn::Min(hn::ConvertTo(kIntegers, hn::Floor(high)), hn::Set(kIntegers, size - 1));
-    static_assert(kBlockSide == 4);
-    hn::Store(hn::ShiftRight<2>(low_pixel), kIntegers, first.data() + i);
-    hn::Store(hn::ShiftRight<2>(high_pixel), kIntegers, last.data() + i);
+    hn::Store(low_pixel, kIntegers, first.data() + i);
+    hn::Store(high_pixel, kIntegers, last.data() + i);
 }
 
-/// `beyond`: how far from a band's edge the centre of a pixel may lie that it inks.
-HWY_INLINE void make_bands(const InkBatch& batch, float beyond, Bands& bands) {
+/// `kSoft`: a band inks only what has its centre within it.
+template <bool kSoft>
+HWY_INLINE void make_bands(const InkBatch& batch, Bands& bands) {
+    constexpr float kRounding = 0.01F;
     const StrokeLanes& strokes = batch.strokes;
     const InkPlanes& planes = *batch.planes[0];
     for (int i = 0; i < kLanes; i += kStep) {
@@ -77,14 +79,16 @@ HWY_INLINE void make_bands(const InkBatch& batch, float beyond, Bands& bands) {
         const Number along_x = hn::IfThenElse(is_point, set(1.0F), hn::Mul(dx, scale));
         const Number along_y = hn::Mul(dy, scale);
         const Number half = hn::Mul(load(strokes.width, i), set(0.5F));
-        const Number reach = hn::Add(half, set(beyond));
+        const SquareCoverage coverage(along_y, along_x);
+        const Number within = kSoft ? half : hn::Add(half, coverage.reach());
+        const Number reach = hn::Add(within, set(kRounding));
         hn::Store(along_x, kFloats, bands.along_x.data() + i);
         hn::Store(along_y, kFloats, bands.along_y.data() + i);
         hn::Store(length, kFloats, bands.length.data() + i);
         hn::Store(half, kFloats, bands.half.data() + i);
-        SquareCoverage(along_y, along_x).store(bands.shape, i);
-        find_blocks(ax, bx, reach, planes.x0, batch.width, i, bands.left, bands.right);
-        find_blocks(ay, by, reach, planes.y0, batch.height, i, bands.top, bands.bottom);
+        coverage.store(bands.shape, i);
+        find_pixels(ax, bx, reach, planes.x0, batch.width, i, bands.left, bands.right);
+        find_pixels(ay, by, reach, planes.y0, batch.height, i, bands.top, bands.bottom);
     }
 }
 
@@ -130,14 +134,13 @@ HWY_INLINE void add_ink(Number ink, float t, const InkPlanes& planes, std::size_
     hn::Store(hn::Min(hn::Load(kFloats, nearest), at), kFloats, nearest);
 }
 
-/// Draws stroke `lane` of a batch: `ink_at(x, y, i)` is the ink of a block's pixels from the i-th
-/// on, (x, y) the centre of its first pixel.
+/// Draws stroke `lane` of a batch: `ink_at(x, y, i)` is the ink of 4 x 4 pixels from the i-th on,
+/// (x, y) the centre of the first one.
 template <class InkAt>
 HWY_INLINE void draw_blocks(const InkBatch& batch, const Bands& bands, int lane,
                             const InkAt& ink_at) {
     constexpr float kHalfBlock = 0.5F * (kBlockSide - 1);
-    // Of narrower ones hardly any block is out of reach, and to see which costs more.
-    constexpr float kNarrow = 1.5F;
+    static_assert(kBlockSide == 4);
     const InkPlanes& planes = *batch.planes[static_cast<std::size_t>(lane)];
     const float ax = batch.strokes.ax[lane];
     const float ay = batch.strokes.ay[lane];
@@ -146,13 +149,12 @@ HWY_INLINE void draw_blocks(const InkBatch& batch, const Bands& bands, int lane,
     const float along_y = bands.along_y[lane];
     // How far a block's pixels reach from its middle, along the band and across it.
     const float extent = 0.5F * kBlockSide * (std::abs(along_x) + std::abs(along_y));
-    const float half = bands.half[lane];
-    const float most = half <= kNarrow ? kInfinity : half + extent;
+    const float most = bands.half[lane] + extent;
     const float last = bands.length[lane] + most;
-    for (int row = bands.top[lane]; row <= bands.bottom[lane]; ++row) {
+    for (int row = bands.top[lane] >> 2; row <= bands.bottom[lane] >> 2; ++row) {
         const float y = planes.y0 + static_cast<float>(row * kBlockSide);
         const float ry = y + kHalfBlock - ay;
-        for (int column = bands.left[lane]; column <= bands.right[lane]; ++column) {
+        for (int column = bands.left[lane] >> 2; column <= bands.right[lane] >> 2; ++column) {
             const float x = planes.x0 + static_cast<float>(column * kBlockSide);
             const float rx = x + kHalfBlock - ax;
             const float s = rx * along_x + ry * along_y;
@@ -171,24 +173,98 @@ HWY_INLINE void draw_blocks(const InkBatch& batch, const Bands& bands, int lane,
     }
 }
 
+/// As many rows of 4 pixels as make a vector, and back.
+template <class Tag>
+HWY_INLINE hn::Vec<Tag> load_rows(Tag tag, const float* from, std::size_t stride) {
+    if constexpr (hn::MaxLanes(Tag()) <= kBlockSide) {
+        return hn::LoadU(tag, from);
+    } else {
+        const hn::Half<Tag> half;
+        const std::size_t next = hn::MaxLanes(Tag()) / (2 * kBlockSide) * stride;
+        return hn::Combine(tag, load_rows(half, from + next, stride),
+                           load_rows(half, from, stride));
+    }
+}
+template <class Tag>
+HWY_INLINE void store_rows(Tag tag, hn::Vec<Tag> value, float* to, std::size_t stride) {
+    if constexpr (hn::MaxLanes(Tag()) <= kBlockSide) {
+        hn::StoreU(value, tag, to);
+    } else {
+        const hn::Half<Tag> half;
+        const std::size_t next = hn::MaxLanes(Tag()) / (2 * kBlockSide) * stride;
+        store_rows(half, hn::LowerHalf(half, value), to, stride);
+        store_rows(half, hn::UpperHalf(half, value), to + next, stride);
+    }
+}
+
+/// The same of a narrow one: mostly 4 x 4 pixels hold all that it inks, if they begin where it
+/// does.
+template <class InkAt>
+HWY_INLINE void draw_narrow(const InkBatch& batch, const Bands& bands, int lane,
+                            const InkAt& ink_at) {
+    const InkPlanes& planes = *batch.planes[static_cast<std::size_t>(lane)];
+    const int right = bands.right[lane];
+    const int bottom = bands.bottom[lane];
+    const auto t = set(batch.strokes.t[lane]);
+    for (int y = bands.top[lane]; y <= bottom; y += kBlockSide) {
+        for (int x = bands.left[lane]; x <= right; x += kBlockSide) {
+            const std::size_t first =
+                static_cast<std::size_t>(y) * planes.stride + static_cast<std::size_t>(x);
+            const float centre_x = planes.x0 + static_cast<float>(x);
+            const float centre_y = planes.y0 + static_cast<float>(y);
+            for (int i = 0; i < kLanes; i += kStep) {
+                const Number ink = ink_at(centre_x, centre_y, i);
+                const std::size_t at = first +
+                                       static_cast<std::size_t>(i / kBlockSide) * planes.stride +
+                                       static_cast<std::size_t>(i % kBlockSide);
+                float* const most = planes.narrow + at;
+                store_rows(kFloats, hn::Max(load_rows(kFloats, most, planes.stride), ink), most,
+                           planes.stride);
+                if (planes.narrow_t == nullptr) continue;
+                float* const nearest = planes.narrow_t + at;
+                const auto inked = hn::Gt(ink, hn::Zero(kFloats));
+                const Number own = hn::IfThenElse(inked, t, set(kInfinity));
+                store_rows(kFloats, hn::Min(load_rows(kFloats, nearest, planes.stride), own),
+                           nearest, planes.stride);
+            }
+            const auto touch = [&](int column, int row) {
+                planes.touched[static_cast<std::size_t>(row / kBlockSide) * planes.across +
+                               static_cast<std::size_t>(column / kBlockSide)] |= kTouched;
+            };
+            const int last_x = std::min(x + kBlockSide - 1, right);
+            const int last_y = std::min(y + kBlockSide - 1, bottom);
+            touch(x, y);
+            touch(last_x, y);
+            touch(x, last_y);
+            touch(last_x, last_y);
+        }
+    }
+}
+
 void draw_solid_batch(const InkBatch& batch) {
     // A band that is wider on either side reaches beyond every pixel that its far edge could cut.
     constexpr float kWideHalf = 0.7072F;
-    constexpr float kHalfDiagonal = 0.75F;  // of a pixel, and a little more
+    // Of one that is wider still, blocks waste less than what begins anywhere, and may be full.
+    constexpr float kNarrowHalf = 1.25F;
     Bands bands;
-    make_bands(batch, kHalfDiagonal, bands);
+    make_bands<false>(batch, bands);
     for (int lane = 0; lane < batch.count; ++lane) {
         const Band band(batch.strokes, bands, lane);
         const SquareCoverage coverage(bands.shape, lane);
         const Number half = set(bands.half[lane]);
         const Number strength = set(batch.strokes.strength[lane]);
-        if (bands.half[lane] >= kWideHalf) {
-            draw_blocks(batch, bands, lane, [&](float x, float y, int i) HWY_ATTR {
-                return hn::Mul(coverage(hn::Sub(half, band.distance(x, y, i))), strength);
-            });
+        const auto wide_ink = [&](float x, float y, int i) HWY_ATTR {
+            return hn::Mul(coverage(hn::Sub(half, band.distance(x, y, i))), strength);
+        };
+        if (bands.half[lane] > kNarrowHalf) {
+            draw_blocks(batch, bands, lane, wide_ink);
             continue;
         }
-        draw_blocks(batch, bands, lane, [&](float x, float y, int i) HWY_ATTR {
+        if (bands.half[lane] >= kWideHalf) {
+            draw_narrow(batch, bands, lane, wide_ink);
+            continue;
+        }
+        draw_narrow(batch, bands, lane, [&](float x, float y, int i) HWY_ATTR {
             const Number distance = band.distance(x, y, i);
             const Number near_side = coverage(hn::Sub(half, distance));
             const Number far_side = coverage(hn::Sub(hn::Neg(half), distance));
@@ -198,10 +274,9 @@ void draw_solid_batch(const InkBatch& batch) {
 }
 
 void draw_soft_batch(const InkBatch& batch, std::span<const float> profile) {
-    constexpr float kRounding = 0.01F;
     const Number entries = set(static_cast<float>(profile.size() - 1));
     Bands bands;
-    make_bands(batch, kRounding, bands);
+    make_bands<true>(batch, bands);
     for (int lane = 0; lane < batch.count; ++lane) {
         const Band band(batch.strokes, bands, lane);
         const Number half = set(bands.half[lane]);

@@ -23,6 +23,11 @@ struct InkPlanes {
     Lanes<float>* coverage;
     Lanes<float>* t;        ///< null: not wanted
     std::uint8_t* touched;  ///< kTouched or, where no more ink can change anything, kFull
+    /// What narrow strokes ink, pixel by pixel and row by row, kBlockSide - 1 more each way than
+    /// the blocks have: the ink of a pixel is the greater of both, its t the lesser.
+    float* narrow;
+    float* narrow_t;     ///< null: not wanted
+    std::size_t stride;  ///< pixels
 };
 inline constexpr std::uint8_t kTouched = 1, kFull = 2;
 

@@ -38,33 +38,6 @@ float least_turn(const LocateSettings& settings) {
     return 2.0F * std::sin(0.5F * settings.crease_min_deg * kRadiansPerDegree);
 }
 
-/// What a prediction says needs no measuring: a limb hides, a seam joins.
-bool cross_as_predicted(const Viewpoint& viewpoint, const LocateSettings& settings,
-                        const Prediction& p, Vec2f a, Vec2f b, const PredictedSide& first,
-                        const PredictedSide& second, Crossing& crossing) {
-    using Kind = Prediction::Kind;
-    const bool first_in_front =
-        p.kind == Kind::first_limb || (p.kind != Kind::second_limb && first.t <= second.t);
-    crossing.point = a + (b - a) * p.at;
-    crossing.first = first.id;
-    crossing.second = second.id;
-    crossing.nearer = first_in_front ? first.id : second.id;
-    crossing.first_in_front = first_in_front;
-    crossing.t = p.t;
-    crossing.strength = 1.0F;
-    const bool one_id = first.id == second.id;
-    if (p.kind != Kind::seam) {
-        crossing.type = one_id ? LineType::self_occlusion : LineType::silhouette;
-        return true;
-    }
-    crossing.type = one_id ? LineType::crease : LineType::intersection;
-    if (one_id) {
-        const float angle = seam_angle(viewpoint, crossing.point, p.t, first.ball, second.ball);
-        crossing.strength = crease_strength(settings, angle);
-    }
-    return crossing.strength > 0.0F;
-}
-
 Locator::Locator(const Viewpoint& viewpoint, const LocateSettings& settings, WayOutFunction way_out)
     : viewpoint_(viewpoint),
       settings_(settings),

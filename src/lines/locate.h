@@ -95,11 +95,32 @@ inline float checked_place(const LocateSettings& settings, const Prediction& p) 
     return p.at;
 }
 
-/// The crossing of the edge from `a` to `b` that a prediction tells of, but for its edge. False if
-/// there is no line: two balls of one geometry that meet at a flat angle.
-bool cross_as_predicted(const Viewpoint& viewpoint, const LocateSettings& settings,
-                        const Prediction& prediction, Vec2f a, Vec2f b, const PredictedSide& first,
-                        const PredictedSide& second, Crossing& crossing);
+/// What a prediction says needs no measuring: a limb hides, a seam joins.
+inline bool cross_as_predicted(const Viewpoint& viewpoint, const LocateSettings& settings,
+                               const Prediction& p, Vec2f a, Vec2f b, const PredictedSide& first,
+                               const PredictedSide& second, Crossing& crossing) {
+    using Kind = Prediction::Kind;
+    const bool first_in_front =
+        p.kind == Kind::first_limb || (p.kind != Kind::second_limb && first.t <= second.t);
+    crossing.point = a + (b - a) * p.at;
+    crossing.first = first.id;
+    crossing.second = second.id;
+    crossing.nearer = first_in_front ? first.id : second.id;
+    crossing.first_in_front = first_in_front;
+    crossing.t = p.t;
+    crossing.strength = 1.0F;
+    const bool one_id = first.id == second.id;
+    if (p.kind != Kind::seam) {
+        crossing.type = one_id ? LineType::self_occlusion : LineType::silhouette;
+        return true;
+    }
+    crossing.type = one_id ? LineType::crease : LineType::intersection;
+    if (one_id) {
+        const float angle = seam_angle(viewpoint, crossing.point, p.t, first.ball, second.ball);
+        crossing.strength = crease_strength(settings, angle);
+    }
+    return crossing.strength > 0.0F;
+}
 
 /// Finds where lines cross suspect edges, and classifies them. Between balls the crossing is
 /// computed and checked by one more sample; else the edge is bisected, all edges in step. Where a

@@ -67,6 +67,46 @@ void find_all_shares(const SegmentEnds& segments, float q, CornerShares& shares)
     for (int i = 0; i < kLanes; i += kStep) find_shares(segments, q, i, shares);
 }
 
+using FourLanes = hn::FixedTag<float, 4>;
+using FourIntegers = hn::RebindToSigned<FourLanes>;
+constexpr FourLanes kFour;
+constexpr FourIntegers kFourIntegers;
+
+HWY_INLINE void add_share(hn::Vec<FourLanes> change, float share, ColorShift& shift) {
+    const auto scaled = hn::Mul(change, hn::Set(kFour, share * kShiftScale));
+    const auto rounded = hn::Floor(hn::Add(scaled, hn::Set(kFour, 0.5F)));
+    const auto sum =
+        hn::Add(hn::LoadU(kFourIntegers, shift.data()), hn::ConvertTo(kFourIntegers, rounded));
+    hn::StoreU(sum, kFourIntegers, shift.data());
+}
+
+std::uint32_t spread_all_shares(const CornerShares& shares, const PixelColor* changes, int count,
+                                const ShiftPlane& plane) {
+    std::uint32_t left = 0;
+    for (int k = 0; k < count; ++k) {
+        const int x = shares.cell_x[k] - plane.x0;
+        const int y = shares.cell_y[k] - plane.y0;
+        if (x < 0 || y < 0 || x >= plane.width || y >= plane.height) {
+            left |= 1U << k;
+            continue;
+        }
+        const auto column = static_cast<std::size_t>(x);
+        const auto row = static_cast<std::size_t>(y);
+        const auto change = hn::LoadU(kFour, changes[k].data());
+        ColorShift* const upper = plane.shifts + row * plane.stride + column;
+        ColorShift* const lower = upper + plane.stride;
+        add_share(change, shares.area[0][k], upper[0]);
+        add_share(change, shares.area[1][k], upper[1]);
+        add_share(change, shares.area[2][k], lower[0]);
+        add_share(change, shares.area[3][k], lower[1]);
+        std::uint8_t* const above = plane.touched + row / kBlockSide * plane.across;
+        std::uint8_t* const below = plane.touched + (row + 1) / kBlockSide * plane.across;
+        above[column / kBlockSide] = above[(column + 1) / kBlockSide] = 1;
+        below[column / kBlockSide] = below[(column + 1) / kBlockSide] = 1;
+    }
+    return left;
+}
+
 }  // namespace ink::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
@@ -75,9 +115,16 @@ HWY_AFTER_NAMESPACE();
 namespace ink {
 
 HWY_EXPORT(find_all_shares);
+HWY_EXPORT(spread_all_shares);
 
 void find_corner_shares(const SegmentEnds& segments, int lattice, CornerShares& shares) {
     HWY_DYNAMIC_DISPATCH(find_all_shares)(segments, static_cast<float>(lattice), shares);
+}
+
+std::uint32_t spread_shares(const CornerShares& shares,
+                            const std::array<PixelColor, kLanes>& changes, int count,
+                            const ShiftPlane& plane) {
+    return HWY_DYNAMIC_DISPATCH(spread_all_shares)(shares, changes.data(), count, plane);
 }
 
 }  // namespace ink

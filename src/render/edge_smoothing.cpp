@@ -1,6 +1,7 @@
 #include "render/edge_smoothing.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include <hwy/highway.h>
@@ -19,7 +20,6 @@ constexpr hn::FixedTag<std::int32_t, 4> kFourIntegers;
 
 Four set(float value) { return hn::Set(kFour, value); }
 
-constexpr float kFixedPoint = 1 << 22;
 constexpr float kMostChange = 64.0F;
 
 int floor_divide(int a, int b) { return (a >= 0 ? a : a - b + 1) / b; }
@@ -31,7 +31,7 @@ void add_to(ColorShift& sum, const ColorShift& shift) {
 }
 
 float shifted(float value, std::int32_t shift, float most) {
-    return std::min(std::max(value + static_cast<float>(shift) * (1.0F / kFixedPoint), 0.0F), most);
+    return std::min(std::max(value + static_cast<float>(shift) * (1.0F / kShiftScale), 0.0F), most);
 }
 
 }  // namespace
@@ -77,51 +77,33 @@ void EdgeSmoothing::add(const Segment& segment, const PixelColor& left, const Pi
 }
 
 void EdgeSmoothing::finish() {
+    if (waiting_ == 0) return;
     find_corner_shares(ends_, q_, shares_);
-    for (int k = 0; k < waiting_; ++k) spread(k);
+    std::uint32_t left = (1U << waiting_) - 1;
+    if (q_ == 1) {
+        any_ = true;
+        left = spread_shares(shares_, changes_, waiting_,
+                             {shifts_.data(), stride_, touched_.data(), across_, tile_.x0, tile_.y0,
+                              tile_.x1 - tile_.x0, tile_.y1 - tile_.y0});
+    }
+    for (; left != 0; left &= left - 1) spread_beyond(std::countr_zero(left));
     waiting_ = 0;
 }
 
-namespace {
-
-/// Adds a change of colour, as far as `share` goes, to a pixel.
-HWY_INLINE void add_share(Four change, float share, ColorShift& shift) {
-    const Four scaled = hn::Mul(change, set(share * kFixedPoint));
-    const auto added = hn::ConvertTo(kFourIntegers, hn::Floor(hn::Add(scaled, set(0.5F))));
-    hn::StoreU(hn::Add(hn::LoadU(kFourIntegers, shift.data()), added), kFourIntegers, shift.data());
-}
-
-}  // namespace
-
-/// Adds one of the waiting segments' colour changes to the pixels at the corners of its cell:
-/// towards the right side's colour for corners on the left, and back.
-void EdgeSmoothing::spread(int k) {
-    const int x = shares_.cell_x[k] - tile_.x0;
-    const int y = shares_.cell_y[k] - tile_.y0;
-    const bool inside = x >= 0 && y >= 0 && x < tile_.x1 - tile_.x0 && y < tile_.y1 - tile_.y0;
-    if (q_ != 1 || !inside) return spread_beyond(k);
-    const Four change = hn::LoadU(kFour, changes_[static_cast<std::size_t>(k)].data());
-    ColorShift* const upper = shifts_.data() + pixel(x, y);
-    ColorShift* const lower = upper + stride_;
-    add_share(change, shares_.area[0][k], upper[0]);
-    add_share(change, shares_.area[1][k], upper[1]);
-    add_share(change, shares_.area[2][k], lower[0]);
-    add_share(change, shares_.area[3][k], lower[1]);
-    touch(x, y);
-    touch(x + 1, y);
-    touch(x, y + 1);
-    touch(x + 1, y + 1);
-    any_ = true;
-}
-
-/// The same of a cell that may reach over the tile's border, or where a pixel has several.
+/// Adds one of the waiting segments' colour changes to the pixels at the corners of its cell, which
+/// may lie beyond the tile's border: towards the right side's colour for corners on the left, and
+/// back.
 void EdgeSmoothing::spread_beyond(int k) {
-    const Four change = hn::LoadU(kFour, changes_[static_cast<std::size_t>(k)].data());
+    const PixelColor& change = changes_[static_cast<std::size_t>(k)];
     for (int corner = 0; corner < 4; ++corner) {
         const int x = floor_divide(shares_.cell_x[k] + corner % 2, q_) - tile_.x0;
         const int y = floor_divide(shares_.cell_y[k] + corner / 2, q_) - tile_.y0;
         if (x < 0 || y < 0 || x > tile_.x1 - tile_.x0 || y > tile_.y1 - tile_.y0) continue;
-        add_share(change, shares_.area[static_cast<std::size_t>(corner)][k], shifts_[pixel(x, y)]);
+        const float share = shares_.area[static_cast<std::size_t>(corner)][k] * kShiftScale;
+        ColorShift& sum = shifts_[pixel(x, y)];
+        for (std::size_t c = 0; c < sum.size(); ++c) {
+            sum[c] += static_cast<std::int32_t>(std::floor(change[c] * share + 0.5F));
+        }
         touch(x, y);
         any_ = true;
     }
@@ -147,7 +129,7 @@ void EdgeSmoothing::apply(int x, int y, ColorPacket& colors) const {
         const auto shift = [&](Lanes<float>& channel, auto by, float most) {
             float* const values = channel.data() + first;
             const auto change = hn::Mul(hn::ConvertTo(kFour, hn::IfThenElseZero(inside, by)),
-                                        set(1.0F / kFixedPoint));
+                                        set(1.0F / kShiftScale));
             const auto sum = hn::Add(hn::Load(kFour, values), change);
             hn::Store(hn::Min(hn::Max(sum, set(0.0F)), set(most)), kFour, values);
         };

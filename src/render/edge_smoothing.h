@@ -14,12 +14,6 @@
 
 namespace ink {
 
-/// Linear, premultiplied R, G, B, A.
-using PixelColor = std::array<float, 4>;
-/// What smoothing adds to one. In fixed point, for a sum that does not depend on the order of
-/// segments, and so not on the tiles.
-using ColorShift = std::array<std::int32_t, 4>;
-
 /// The pixels along the border of a tile, to which lines of several tiles may add. What lies in the
 /// first row, then in the first column below it.
 struct Fringe {
@@ -65,7 +59,6 @@ class EdgeSmoothing {
         return static_cast<std::size_t>(y) * stride_ + static_cast<std::size_t>(x);
     }
     void clear_touched();
-    void spread(int k);
     void spread_beyond(int k);
     void touch(int x, int y) {
         touched_[static_cast<std::size_t>(y / kBlockSide) * across_ +

@@ -410,27 +410,28 @@ void LineFinder::add_specular() {
 void LineFinder::locate() {
     crossings_.clear();
     others_.clear();
-    ball_edges_.clear();
     mesh_edges_.clear();
+    ball_locator_.begin();
     for (std::uint32_t k = 0; k < suspects_.size(); ++k) {
         const SuspectEdge& edge = suspects_[k];
+        const int i = edge.i + (edge.down ? 0 : 1);
+        const int j = edge.j + (edge.down ? 1 : 0);
         MeshEdge meshes{k, {}, {}};
         if (front_ && edges_.has_meshes && see_mesh(edge.i, edge.j, meshes.first) &&
-            see_mesh(edge.i + (edge.down ? 0 : 1), edge.j + (edge.down ? 1 : 0), meshes.second)) {
+            see_mesh(i, j, meshes.second)) {
             mesh_edges_.push_back(meshes);
             continue;
         }
-        BallEdge& balls = ball_edges_.emplace_back();
-        balls.edge = k;
-        const bool computable =
-            front_ && see_ball(edge.i, edge.j, balls.first) &&
-            see_ball(edge.i + (edge.down ? 0 : 1), edge.j + (edge.down ? 1 : 0), balls.second) &&
-            balls.first.surface != balls.second.surface;
-        if (computable) continue;
-        ball_edges_.pop_back();
-        others_.push_back(k);
+        BallHit first;
+        BallHit second;
+        if (front_ && see_ball(edge.i, edge.j, first) && see_ball(i, j, second) &&
+            first.surface != second.surface) {
+            ball_locator_.add(k, grid_.point(edge.i, edge.j), grid_.point(i, j), first, second);
+        } else {
+            others_.push_back(k);
+        }
     }
-    ball_locator_.locate(grid_, suspects_, ball_edges_, identify_, crossings_, others_);
+    ball_locator_.locate(identify_, crossings_, others_);
     mesh_locator_.locate(grid_, suspects_, mesh_edges_, identify_, sample_, crossings_, others_);
     locator_.locate_some(grid_, suspects_, others_, describe_, sample_, crossings_);
 }

@@ -216,7 +216,6 @@ class LineFinder {
     std::vector<std::uint8_t> seen_;
     std::vector<HitPacket> point_hits_;
     std::vector<SuspectEdge> suspects_;
-    std::vector<BallEdge> ball_edges_;
     std::vector<MeshEdge> mesh_edges_;
     std::vector<std::uint32_t> others_;  ///< suspects between anything else
     std::vector<Crossing> crossings_;
