@@ -341,10 +341,17 @@ void Film::put_pixel(int x, int y, const std::array<float, 4>& shaded) {
     one.g[lane] = shaded[1];
     one.b[lane] = shaded[2];
     one.a[lane] = shaded[3];
+    Block finished;
+    finish_shaded(one, finished);
+    if (!settings_.linear) {
+        if (settings_.display) {
+            const auto row = static_cast<std::size_t>(y) * static_cast<std::size_t>(size_.width);
+            display_.pixels[row + static_cast<std::size_t>(x)] = finished.display[lane];
+        }
+        return;
+    }
     Block all{};
     load(x0, y0, all);
-    Block finished{};
-    finish_shaded(one, finished);
     all.display[lane] = finished.display[lane];
     all.linear.r[lane] = finished.linear.r[lane];
     all.linear.g[lane] = finished.linear.g[lane];

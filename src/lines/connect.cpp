@@ -34,25 +34,27 @@ Vec2f nearest_within(Vec2f p, Vec2f a, Vec2f b) {
 
 }  // namespace
 
-INKTRACE_INLINE Connector::Port Connector::make_port(const SampleGrid& grid, int i, int j, int side,
-                                                     const SuspectEdge& edge,
+/// Of a crossing on a side of cell (i, j): `corners` are the samples at the cell's corners,
+/// clockwise from its upper left one, which lies at `corner` on the screen.
+INKTRACE_INLINE Connector::Port Connector::make_port(const Corners& corners, Vec2f corner,
+                                                     float per_spacing, int side,
                                                      const Crossing& crossing) {
-    const Vec2f corner = grid.point(i, j);
-    const Vec2f inside = (crossing.point - corner) * (1.0F / grid.spacing);
-    const auto first = static_cast<std::uint32_t>(grid.index(edge.i, edge.j));
-    const auto second = static_cast<std::uint32_t>(edge.down ? grid.index(edge.i, edge.j + 1)
-                                                             : grid.index(edge.i + 1, edge.j));
-    Port port{0.0F,  &crossing, crossing.first,         crossing.second,
-              first, second,    crossing.first_in_front};
+    Port port{0.0F,
+              &crossing,
+              crossing.first,
+              crossing.second,
+              corners[static_cast<std::size_t>(side)],
+              corners[static_cast<std::size_t>(side + 1) % 4],
+              crossing.first_in_front};
+    const Vec2f inside = (crossing.point - corner) * per_spacing;
     switch (side) {
         case kTop: port.way = inside.x; break;
         case kRight: port.way = 1.0F + inside.y; break;
         case kBottom: port.way = 3.0F - inside.x; break;
         default: port.way = 4.0F - inside.y; break;
     }
-    if (side == kBottom || side == kLeft) {  // walked from the second end to the first
+    if (side == kBottom || side == kLeft) {  // walked from the edge's second end to its first
         std::swap(port.before, port.after);
-        std::swap(port.before_sample, port.after_sample);
         port.before_in_front = !port.before_in_front;
     }
     return port;
@@ -106,6 +108,7 @@ void Connector::connect(const SampleGrid& grid, std::span<const SuspectEdge> edg
     segments.clear();
     if (crossings.empty()) return;
     count_members(grid, edges, crossings);
+    segments.reserve(crossings.size());
     // Most cells have none, or one, which there is nothing to join with: eight at a time.
     constexpr std::uint64_t kTwoOrMore = 0x0202020202020202U;
     for (int j = 0; j < grid.height - 1; ++j) {
@@ -115,7 +118,7 @@ void Connector::connect(const SampleGrid& grid, std::span<const SuspectEdge> edg
             std::memcpy(&eight, row + first, 8);
             for (eight &= kTwoOrMore; eight != 0; eight &= eight - 1) {
                 const std::size_t i = first + static_cast<std::size_t>(std::countr_zero(eight)) / 8;
-                connect_cell(grid, edges, crossings, static_cast<int>(i), j, segments);
+                connect_cell(grid, crossings, static_cast<int>(i), j, segments);
             }
         }
     }
@@ -151,14 +154,17 @@ void Connector::count_members(const SampleGrid& grid, std::span<const SuspectEdg
     std::ranges::sort(more_);
 }
 
-void Connector::connect_cell(const SampleGrid& grid, std::span<const SuspectEdge> edges,
-                             std::span<const Crossing> crossings, int i, int j,
-                             std::vector<Segment>& segments) {
+void Connector::connect_cell(const SampleGrid& grid, std::span<const Crossing> crossings, int i,
+                             int j, std::vector<Segment>& segments) {
     const std::size_t cell = static_cast<std::size_t>(j) * stride_ + static_cast<std::size_t>(i);
+    const auto upper = static_cast<std::uint32_t>(grid.index(i, j));
+    const auto lower = static_cast<std::uint32_t>(grid.index(i, j + 1));
+    const Corners corners{upper, upper + 1, lower + 1, lower};
+    const Vec2f corner = grid.point(i, j);
+    const float per_spacing = 1.0F / grid.spacing;
     const auto port = [&](Member member) {
-        const Crossing& crossing = crossings[member & 0x3FFFFFFFU];
-        return make_port(grid, i, j, static_cast<int>(member >> 30U), edges[crossing.edge],
-                         crossing);
+        return make_port(corners, corner, per_spacing, static_cast<int>(member >> 30U),
+                         crossings[member & 0x3FFFFFFFU]);
     };
     Port p = port(members_[cell][0]);
     Port q = port(members_[cell][1]);

@@ -37,10 +37,10 @@ class Connector {
 
     void count_members(const SampleGrid& grid, std::span<const SuspectEdge> edges,
                        std::span<const Crossing> crossings);
-    void connect_cell(const SampleGrid& grid, std::span<const SuspectEdge> edges,
-                      std::span<const Crossing> crossings, int i, int j,
+    void connect_cell(const SampleGrid& grid, std::span<const Crossing> crossings, int i, int j,
                       std::vector<Segment>& segments);
-    static Port make_port(const SampleGrid& grid, int i, int j, int side, const SuspectEdge& edge,
+    using Corners = std::array<std::uint32_t, 4>;
+    static Port make_port(const Corners& corners, Vec2f corner, float per_spacing, int side,
                           const Crossing& crossing);
     static bool one_line(const Port& p, const Port& q);
     void join_ports(std::vector<Segment>& segments);

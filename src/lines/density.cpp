@@ -182,18 +182,29 @@ float LineThinning::scale_at(Vec2f point, int level) const {
 }
 
 void LineThinning::scales_at(std::span<const Vec2f> points, std::span<float> scales) const {
-    Vec2f lower{kInfinity, kInfinity};
-    Vec2f upper{-kInfinity, -kInfinity};
-    for (const Vec2f p : points) {
-        lower = {std::min(lower.x, p.x), std::min(lower.y, p.y)};
-        upper = {std::max(upper.x, p.x), std::max(upper.y, p.y)};
-    }
-    if (most >= 1.0F || points.empty() || direct.most_within(lower, upper) <= free_share(most)) {
+    if (most >= 1.0F) {
         std::ranges::fill(scales, 1.0F);
         return;
     }
-    direct.at(points, scales);
-    scales_of(most, scales);
+    // Places that follow each other are mostly close together.
+    constexpr std::size_t kRun = 32;
+    for (std::size_t first = 0; first < points.size(); first += kRun) {
+        const std::size_t count = std::min(kRun, points.size() - first);
+        const std::span<const Vec2f> some = points.subspan(first, count);
+        const std::span<float> own = scales.subspan(first, count);
+        Vec2f lower = some[0];
+        Vec2f upper = some[0];
+        for (const Vec2f p : some) {
+            lower = {std::min(lower.x, p.x), std::min(lower.y, p.y)};
+            upper = {std::max(upper.x, p.x), std::max(upper.y, p.y)};
+        }
+        if (direct.most_within(lower, upper) <= free_share(most)) {
+            std::ranges::fill(own, 1.0F);
+            continue;
+        }
+        direct.at(some, own);
+        scales_of(most, own);
+    }
 }
 
 }  // namespace ink

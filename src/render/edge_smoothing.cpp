@@ -20,8 +20,6 @@ constexpr hn::FixedTag<std::int32_t, 4> kFourIntegers;
 
 Four set(float value) { return hn::Set(kFour, value); }
 
-constexpr float kMostChange = 64.0F;
-
 int floor_divide(int a, int b) { return (a >= 0 ? a : a - b + 1) / b; }
 
 bool is_zero(const ColorShift& shift) { return (shift[0] | shift[1] | shift[2] | shift[3]) == 0; }
@@ -61,19 +59,6 @@ void EdgeSmoothing::clear_touched() {
         for (int j = 0; j < kBlockSide; ++j, row += stride_)
             std::fill_n(row, kBlockSide, ColorShift{});
     }
-}
-
-void EdgeSmoothing::add(const Segment& segment, const PixelColor& left, const PixelColor& right) {
-    const auto change =
-        hn::Clamp(hn::Sub(hn::LoadU(kFour, right.data()), hn::LoadU(kFour, left.data())),
-                  set(-kMostChange), set(kMostChange));
-    if (hn::AllTrue(kFour, hn::Eq(change, set(0.0F)))) return;
-    hn::StoreU(change, kFour, changes_[static_cast<std::size_t>(waiting_)].data());
-    ends_.ax[waiting_] = segment.a.x;
-    ends_.ay[waiting_] = segment.a.y;
-    ends_.bx[waiting_] = segment.b.x;
-    ends_.by[waiting_] = segment.b.y;
-    if (++waiting_ == kLanes) finish();
 }
 
 void EdgeSmoothing::finish() {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <span>
@@ -35,7 +36,22 @@ class EdgeSmoothing {
     /// Clears what there is and moves to the segments in the cells of a tile.
     void begin(const Tile& tile);
     /// `left` and `right` are the colours of the segment's two sides.
-    void add(const Segment& segment, const PixelColor& left, const PixelColor& right);
+    void add(const Segment& segment, PixelColor left, PixelColor right) {
+        constexpr float kMostChange = 64.0F;
+        PixelColor& change = changes_[static_cast<std::size_t>(waiting_)];
+        bool any = false;
+        // Channel by channel: to load as a vector what was stored in pieces takes a wait.
+        for (std::size_t c = 0; c < change.size(); ++c) {
+            change[c] = std::clamp(right[c] - left[c], -kMostChange, kMostChange);
+            any = any || change[c] != 0.0F;
+        }
+        if (!any) return;
+        ends_.ax[waiting_] = segment.a.x;
+        ends_.ay[waiting_] = segment.a.y;
+        ends_.bx[waiting_] = segment.b.x;
+        ends_.by[waiting_] = segment.b.y;
+        if (++waiting_ == kLanes) finish();
+    }
     /// Segments wait for others; after the last one has been added, this takes in what is left.
     void finish();
 

@@ -25,6 +25,44 @@ ScreenBox screen_box(const Block& block, float spacing) {
 
 }  // namespace
 
+/// Linear, premultiplied colour of a point of the grid.
+INKTRACE_INLINE PixelColor LineFinder::color_at(int i, int j) const {
+    const auto [k, place] = place_of(i, j);
+    const bool empty = k == kEmptyBlock;
+    const ColorPacket& colors = empty ? edges_.pipeline.shader.background() : colors_[k];
+    const int lane = empty ? 0 : place;
+    return {colors.r[lane], colors.g[lane], colors.b[lane], colors.a[lane]};
+}
+
+/// What is seen in a mirror must not thin the lines of the mirror.
+INKTRACE_INLINE void LineFinder::count(const InkStroke& stroke) {
+    const float width = edges_.ink.styles[stroke.style].width_px * stroke.width_scale;
+    density_.add(stroke, width);
+    if (specular_ && stroke.direct) direct_density_.add(stroke, width);
+}
+
+INKTRACE_INLINE void LineFinder::keep_stroke(const Segment& segment) {
+    if (!edges_.wanted.has(segment.type) || segment.for_data) return;
+    const InkStroke stroke = make_ink_stroke(segment, edges_.style_of(segment));
+    // Those between faces are counted by add_face_density.
+    if (segment.type != LineType::mesh) count(stroke);
+    if (edges_.draw_lines) strokes_.push_back(stroke);
+}
+
+/// Whether a point of the grid saw a ball or the background, and which.
+INKTRACE_INLINE bool LineFinder::see_ball(int i, int j, BallHit& hit) const {
+    const auto [block, lane] = place_of(i, j);
+    if (block == kEmptyBlock) return true;
+    const HitPacket& hits = hits_[block];
+    const std::uint32_t object = hits.object[lane];
+    if (object == kNoObject) return true;
+    hit.id = grid_.id[grid_.index(i, j)];
+    hit.surface = {object, hits.primitive[lane]};
+    hit.t = hits.t[lane];
+    hit.ball = edges_.surfaces.ball(object, hits.primitive[lane]);
+    return static_cast<bool>(hit.ball);
+}
+
 TileLines LineFinder::search(const Tile& tile) {
     found_ = {};
     strokes_.clear();
@@ -278,15 +316,6 @@ void LineFinder::put_aovs(Block block) {
     edges_.pipeline.aovs->put(block, {}, hits[0]);
 }
 
-/// Linear, premultiplied colour of a point of the grid.
-PixelColor LineFinder::color_at(int i, int j) const {
-    const auto [k, place] = place_of(i, j);
-    const bool empty = k == kEmptyBlock;
-    const ColorPacket& colors = empty ? edges_.pipeline.shader.background() : colors_[k];
-    const int lane = empty ? 0 : place;
-    return {colors.r[lane], colors.g[lane], colors.b[lane], colors.a[lane]};
-}
-
 void LineFinder::find_lines() {
     const Timer timer(stats_.lines_ms);
     if (!edges_.find_lines && !edges_.smooth_shading) return;
@@ -361,14 +390,6 @@ void LineFinder::keep() {
     if (smooths_) smooth();
 }
 
-void LineFinder::keep_stroke(const Segment& segment) {
-    if (!edges_.wanted.has(segment.type) || segment.for_data) return;
-    const InkStroke stroke = make_ink_stroke(segment, edges_.style_of(segment));
-    // Those between faces are counted by add_face_density.
-    if (segment.type != LineType::mesh) count(stroke);
-    if (edges_.draw_lines) strokes_.push_back(stroke);
-}
-
 void LineFinder::smooth() {
     const Timer phase(stats_.blend_ms);
     const auto color = [&](std::uint32_t index) {
@@ -389,13 +410,6 @@ float LineFinder::gap_behind(const Segment& segment) const {
     const std::uint32_t far = segment.left_in_front ? segment.right_sample : segment.left_sample;
     if (grid_.id[far] == kBackground) return 0.0F;
     return std::max(grid_.t[far] - segment.t, 0.0F);
-}
-
-/// What is seen in a mirror must not thin the lines of the mirror.
-void LineFinder::count(const InkStroke& stroke) {
-    const float width = edges_.ink.styles[stroke.style].width_px * stroke.width_scale;
-    density_.add(stroke, width);
-    if (specular_ && stroke.direct) direct_density_.add(stroke, width);
 }
 
 void LineFinder::add_specular() {
@@ -455,20 +469,6 @@ void LineFinder::close_slits() {
             seen_[block] = 1;
         }
     }
-}
-
-/// Whether a point of the grid saw a ball or the background, and which.
-bool LineFinder::see_ball(int i, int j, BallHit& hit) const {
-    const auto [block, lane] = place_of(i, j);
-    if (block == kEmptyBlock) return true;
-    const HitPacket& hits = hits_[block];
-    const std::uint32_t object = hits.object[lane];
-    if (object == kNoObject) return true;
-    hit.id = grid_.id[grid_.index(i, j)];
-    hit.surface = {object, hits.primitive[lane]};
-    hit.t = hits.t[lane];
-    hit.ball = edges_.surfaces.ball(object, hits.primitive[lane]);
-    return static_cast<bool>(hit.ball);
 }
 
 /// Whether a point of the grid saw a mesh that can be walked on or the background, and where.
