@@ -106,8 +106,7 @@ void Sampler::trace_blocks(std::span<const Block> blocks, Vec2f offset, std::spa
 }
 
 void Sampler::find_blocks(std::span<const Block> blocks, Vec2f offset) {
-    points_.resize(blocks.size());
-    place_blocks(spacing_, blocks, offset, points_.data());
+    place_blocks(spacing_, blocks, offset, place(blocks.size()).data());
     const ScreenBox box = shifted(bounds(blocks, spacing_), offset);
     if (!entered(box)) enter(box);
     for (const Block& block : blocks) {
@@ -118,11 +117,11 @@ void Sampler::find_blocks(std::span<const Block> blocks, Vec2f offset) {
     constexpr std::ptrdiff_t kFew = 4;
     const auto strips = std::ranges::find_if(blocks, &Block::is_strip);
     found_ = strips - blocks.begin() > kFew;
-    if (found_) tracer_->find(raster_of({blocks.begin(), strips}, offset), points_);
+    if (found_) tracer_->find(raster_of({blocks.begin(), strips}, offset), points());
 }
 
 void Sampler::take_hits(std::size_t first, std::span<HitPacket> hits) {
-    const auto points = std::span(points_).subspan(first, hits.size());
+    const auto points = this->points().subspan(first, hits.size());
     const auto rays = std::span(packets_).subspan(first, hits.size());
     make_rays(camera_, points, rays.data());
     if (found_) {
@@ -133,9 +132,16 @@ void Sampler::take_hits(std::size_t first, std::span<HitPacket> hits) {
     face_viewer(rays.data(), hits);
 }
 
-/// For a ray packet a point packet. Those that were made before are not cleared again.
+/// Room for the points of a call. What was made before is not cleared again.
+std::span<PointPacket> Sampler::place(std::size_t packets) {
+    if (points_.size() < packets) points_.resize(packets);
+    placed_ = packets;
+    return {points_.data(), packets};
+}
+
+/// The same for their rays.
 void Sampler::make_room() {
-    if (packets_.size() < points_.size()) packets_.resize(points_.size());
+    if (packets_.size() < placed_) packets_.resize(placed_);
 }
 
 /// Where blocks lie; they are aligned to each other.
@@ -171,7 +177,7 @@ BlockRaster Sampler::raster_of(std::span<const Block> blocks, Vec2f offset) {
 void Sampler::place_stencils(Block block, Vec2f offset, std::span<const Vec2f> stencil) {
     block.columns = kBlockSide;
     block.rows = kBlockSide;
-    points_.resize(stencil.size());
+    place(stencil.size());
     for (std::size_t k = 0; k < stencil.size(); ++k) {
         place_blocks(spacing_, {&block, 1}, offset + stencil[k], &points_[k]);
     }
@@ -199,10 +205,10 @@ void Sampler::identify(std::span<HitPacket> hits) {
     std::span<const RayPacket> rays;
     if (tracer_->needs_rays()) {
         make_room();
-        make_rays(camera_, points_, packets_.data());
+        make_rays(camera_, points(), packets_.data());
         rays = packets();
     }
-    tracer_->identify(points_, rays, hits.first(points_.size()));
+    tracer_->identify(points(), rays, hits.first(placed_));
 }
 
 bool Sampler::covers(std::uint32_t object, std::uint32_t primitive, Block block, Vec2f offset,
@@ -226,13 +232,13 @@ void Sampler::complete(std::size_t k, HitPacket& hits) {
 
 void Sampler::trace_points(std::span<const Vec2f> points, std::vector<HitPacket>& hits) {
     place_points(points);
-    hits.resize(points_.size());
+    hits.resize(placed_);
     trace(hits);
 }
 
 void Sampler::identify_points(std::span<const Vec2f> points, std::vector<HitPacket>& hits) {
     place_points(points);
-    hits.resize(points_.size());
+    hits.resize(placed_);
     identify(hits);
 }
 
@@ -241,7 +247,7 @@ void Sampler::place_points(std::span<const Vec2f> points) {
     rays_ += points.size();
     sort_by_place(points, box);
     const std::size_t count = (points.size() + kLanes - 1) / kLanes;
-    points_.resize(count);
+    place(count);
     for (std::size_t k = 0; k < count; ++k) {
         const std::size_t first = k * kLanes;
         for (int i = 0; i < kLanes; ++i) {
@@ -282,9 +288,9 @@ void Sampler::sort_by_place(std::span<const Vec2f> points, const ScreenBox& box)
 
 void Sampler::trace(std::span<HitPacket> hits) {
     make_room();
-    make_rays(camera_, points_, packets_.data());
-    const std::span<HitPacket> traced = hits.first(points_.size());
-    tracer_->intersect(points_, packets(), traced);
+    make_rays(camera_, points(), packets_.data());
+    const std::span<HitPacket> traced = hits.first(placed_);
+    tracer_->intersect(points(), packets(), traced);
     face_viewer(packets_.data(), traced);
 }
 

@@ -75,9 +75,9 @@ class Sampler {
     std::span<const std::uint32_t> order() const { return order_; }
 
     /// The rays of the last call, packet by packet; not after those that identify.
-    std::span<const RayPacket> packets() const { return {packets_.data(), points_.size()}; }
+    std::span<const RayPacket> packets() const { return {packets_.data(), placed_}; }
     /// The points of the last call, packet by packet.
-    std::span<const PointPacket> points() const { return points_; }
+    std::span<const PointPacket> points() const { return {points_.data(), placed_}; }
 
     std::size_t rays() const { return rays_; }  ///< traced so far
 
@@ -87,6 +87,7 @@ class Sampler {
     void place_points(std::span<const Vec2f> points);
     void trace(std::span<HitPacket> hits);
     void identify(std::span<HitPacket> hits);
+    std::span<PointPacket> place(std::size_t packets);
     void make_room();
     bool entered(const ScreenBox& box) const;
     void sort_by_place(std::span<const Vec2f> points, const ScreenBox& box);
@@ -95,8 +96,9 @@ class Sampler {
     const Camera& camera_;
     float spacing_;
     ScreenBox area_{kInfinity, kInfinity, -kInfinity, -kInfinity};
-    std::vector<PointPacket> points_;
-    std::vector<RayPacket> packets_;    ///< as many as there were points, and more
+    std::vector<PointPacket> points_;   ///< those of the last call, and room for more
+    std::size_t placed_ = 0;            ///< in the last call
+    std::vector<RayPacket> packets_;    ///< likewise
     bool found_ = false;                ///< by find_blocks: hits need only be taken
     std::vector<std::uint32_t> cells_;  ///< of a raster of blocks
     std::vector<std::uint32_t> order_;
