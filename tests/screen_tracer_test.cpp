@@ -77,19 +77,18 @@ class Seen {
         tracer->intersect(points, rays(points), hits);
         return hits;
     }
-    /// Of points as `pixels` gives them.
     /// The first packets are the cells of a raster.
     std::vector<HitPacket> trace_raster(const std::vector<PointPacket>& points) const {
-        const auto tracer = frame_->tile_tracer();
-        tracer->enter(whole());
-        const int across = size_.width / kBlockSide;
-        const int down = size_.height / kBlockSide;
-        std::vector<std::uint32_t> cells(static_cast<std::size_t>(across * down));
-        std::iota(cells.begin(), cells.end(), 0U);
         std::vector<HitPacket> hits(points.size());
-        tracer->find({0, 0, kBlockSide, across, down, cells, cells.size()}, points);
-        tracer->resolve(0, points, rays(points), hits);
+        find_raster(points)->resolve(0, points, rays(points), hits);
         return hits;
+    }
+    /// Likewise.
+    std::vector<BorderPacket> measure_raster(const std::vector<PointPacket>& points) const {
+        EXPECT_TRUE(frame_->measures_borders());
+        std::vector<BorderPacket> borders(points.size());
+        find_raster(points)->measure(0, borders);
+        return borders;
     }
     std::vector<HitPacket> trace_brute_force(const std::vector<PointPacket>& points) const {
         return trace(*oracle_, points, Coherence::incoherent);
@@ -109,6 +108,17 @@ class Seen {
         return {0, 0, static_cast<float>(size_.width), static_cast<float>(size_.height)};
     }
 
+    std::unique_ptr<TileTracer> find_raster(const std::vector<PointPacket>& points) const {
+        auto tracer = frame_->tile_tracer();
+        tracer->want_borders();
+        tracer->enter(whole());
+        const int across = size_.width / kBlockSide;
+        const int down = size_.height / kBlockSide;
+        std::vector<std::uint32_t> cells(static_cast<std::size_t>(across * down));
+        std::iota(cells.begin(), cells.end(), 0U);
+        tracer->find({0, 0, kBlockSide, across, down, cells, cells.size()}, points);
+        return tracer;
+    }
     std::vector<RayPacket> rays(const std::vector<PointPacket>& points) const {
         std::vector<RayPacket> rays(points.size());
         for (std::size_t k = 0; k < points.size(); ++k) {
@@ -229,6 +239,64 @@ TEST(ScreenTracer, HitsWhatBruteForceHitsInParallel) {
     const Seen seen(random_objects(8, 150, 200), view, {160, 96});
     expect_same_hits(seen, seen.pixels());
     expect_same_hits(seen, seen.random_points(4, 200));
+}
+
+/// Where a camera sees a point, pixels.
+Vec2d on_screen(const Projection& p, Vec3f position) {
+    const Vec3d v = to_double(position) - p.start;
+    const double width = p.origin_step + dot(v, p.forward) * p.slope_step;
+    return {dot(v, p.right) / width + p.centre.x, dot(v, p.down) / width + p.centre.y};
+}
+
+double distance_to_side(Vec2d point, Vec2d a, Vec2d b) {
+    const Vec2d d{b.x - a.x, b.y - a.y};
+    const Vec2d r{point.x - a.x, point.y - a.y};
+    const double s = std::clamp((r.x * d.x + r.y * d.y) / (d.x * d.x + d.y * d.y), 0.0, 1.0);
+    return std::hypot(r.x - s * d.x, r.y - s * d.y);
+}
+
+TEST(ScreenTracer, MeasuresHowFarPointsAreFromTheBordersOfTheirTriangles) {
+    for (const bool parallel : {false, true}) {
+        ViewSettings view;
+        if (parallel) view.orthographic = 0.0;
+        const Seen seen(random_objects(7, 50, 200), view, kSmall);
+        const Projection projection = seen.camera().projection();
+        const auto points = seen.pixels();
+        const auto hits = seen.trace_raster(points);
+        const auto borders = seen.measure_raster(points);
+        int measured = 0;
+        for (std::size_t k = 0; k < points.size(); ++k) {
+            for (int i = 0; i < kLanes; ++i) {
+                const std::uint32_t object = hits[k].object[i];
+                const Mesh* mesh = object == kNoObject
+                                       ? nullptr
+                                       : std::get_if<Mesh>(&seen.scene().objects()[object].shape);
+                if (mesh == nullptr) {
+                    EXPECT_TRUE(std::isinf(borders[k].distance[i]));
+                    continue;
+                }
+                ++measured;
+                std::array<Vec2d, 3> corners;
+                for (std::size_t n = 0; n < 3; ++n) {
+                    corners[n] = on_screen(
+                        projection, mesh->vertices[mesh->triangles[hits[k].primitive[i]][n]]);
+                }
+                const auto nearest_to = [&](Vec2d point) {
+                    return std::min({distance_to_side(point, corners[0], corners[1]),
+                                     distance_to_side(point, corners[1], corners[2]),
+                                     distance_to_side(point, corners[2], corners[0])});
+                };
+                const Vec2d point{points[k].x[i], points[k].y[i]};
+                const double distance = borders[k].distance[i];
+                EXPECT_NEAR(distance, nearest_to(point), 1e-4);
+                const Vec2d n{borders[k].nx[i], borders[k].ny[i]};
+                EXPECT_NEAR(std::hypot(n.x, n.y), 1.0, 1e-6);
+                const Vec2d foot{point.x - n.x * distance, point.y - n.y * distance};
+                EXPECT_NEAR(nearest_to(foot), 0.0, 1e-4);
+            }
+        }
+        EXPECT_GT(measured, 1000);
+    }
 }
 
 TEST(ScreenTracer, SeesSpheresOfEverySize) {

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "accel/cluster_bands.h"
+#include "accel/screen_borders.h"
 #include "accel/screen_packets.h"
 
 namespace ink {
@@ -39,10 +40,18 @@ class PacketStore {
         owners_[place] = {cluster, area_};
         if (!place_of_.empty()) place_of_[cluster] = place;
         prepare(basis_, clusters_, clusters_.clusters[cluster], packets_[place]);
+        if (wants_sides_ && packets_[place].kind == ClusterKind::triangles) {
+            sides_.resize(packets_.size());
+            find_sides(packets_[place], sides_[place]);
+        }
         return place;
     }
 
     const ScreenPacket* packets() const { return packets_.data(); }
+
+    /// To be called before the first `get`: the sides of triangles are found as well.
+    void want_sides() { wants_sides_ = true; }
+    const PacketSides* sides() const { return sides_.data(); }
 
   private:
     static constexpr std::uint32_t kNone = 0xFFFFFFFFU;
@@ -81,6 +90,8 @@ class PacketStore {
     const Clusters& clusters_;
     const Basis& basis_;
     std::vector<ScreenPacket> packets_;
+    bool wants_sides_ = false;
+    std::vector<PacketSides> sides_;       ///< of each packet of triangles
     std::vector<Owner> owners_;            ///< a packet
     std::vector<std::uint32_t> place_of_;  ///< a cluster: its packet, or kNone; empty: none is kept
     std::uint32_t area_ = 0;

@@ -72,6 +72,12 @@ class ScreenTileTracer final : public TileTracer {
     }
     void resolve(std::size_t first, std::span<const PointPacket> points,
                  std::span<const RayPacket> rays, std::span<HitPacket> hits) override;
+    void want_borders() override { store_.want_sides(); }
+    void measure(std::size_t first, std::span<BorderPacket> borders) override {
+        for (std::size_t k = 0; k < borders.size(); ++k) {
+            ink::measure(fronts_[first + k], store_.packets(), store_.sides(), borders[k]);
+        }
+    }
     void identify(std::span<const PointPacket> points, std::span<const RayPacket> rays,
                   std::span<HitPacket> hits) override;
     bool needs_rays() const override { return false; }
@@ -294,6 +300,8 @@ class ScreenFrameTracer final : public FrameTracer {
     std::unique_ptr<TileTracer> tile_tracer() const override {
         return std::make_unique<ScreenTileTracer>(view_);
     }
+
+    bool measures_borders() const override { return true; }
 
     bool is_suited(const Window& part) const;
 

@@ -60,6 +60,12 @@ struct PointPacket {
     Lanes<std::int32_t> active = Lanes<std::int32_t>::filled(-1);  ///< as in RayPacket
 };
 
+/// How far sixteen points are from the borders of the triangles that they hit.
+struct BorderPacket {
+    Lanes<float> distance;  ///< to the nearest side, pixels; infinite where no triangle was hit
+    Lanes<float> nx, ny;    ///< unit, across that side
+};
+
 struct ScreenBox {
     float left, top, right, bottom;  ///< pixels
 };
@@ -96,6 +102,11 @@ class TileTracer {
         intersect(points, rays, hits);
     }
 
+    /// After `find`: how far the points of packets `first` and on are from the borders of the
+    /// triangles that they hit. Only if the frame `measures_borders`, and after `want_borders`.
+    virtual void want_borders() {}
+    virtual void measure(std::size_t /*first*/, std::span<BorderPacket> /*borders*/) {}
+
     /// Finds t, object and primitive of the hits and no more. Rays may be left out unless
     /// `needs_rays`.
     virtual void identify(std::span<const PointPacket> points, std::span<const RayPacket> rays,
@@ -123,6 +134,8 @@ class FrameTracer {
   public:
     virtual ~FrameTracer() = default;
     virtual std::unique_ptr<TileTracer> tile_tracer() const = 0;
+    /// Whether its tile tracers can tell how far points are from the borders of triangles.
+    virtual bool measures_borders() const { return false; }
 };
 
 /// Finds the first surface along rays. Safe to use from many threads.

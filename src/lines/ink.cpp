@@ -51,6 +51,12 @@ float InkSettings::widest() const {
     return widest;
 }
 
+bool InkSettings::has_several_inks() const {
+    return std::ranges::any_of(styles, [this](const LineStyle& style) {
+        return style.color != styles.front().color || style.opacity != styles.front().opacity;
+    });
+}
+
 float InkSettings::reach() const {
     return 0.5F * widest() + 0.75F;  // half a pixel's diagonal
 }
@@ -175,6 +181,17 @@ void InkTile::draw_faces(int x, int y, const Lanes<float>& distance, const Lanes
     const bool any =
         add_ink(inks, strength, t, layer.coverage[k], layer.t.empty() ? nullptr : &layer.t[k]);
     if (any && touched_[k] == 0) touched_[k] = kTouched;
+}
+
+void InkTile::draw_borders(int x, int y, const Lanes<std::uint32_t>& codes, float reach,
+                           const Lanes<float>* depths, std::size_t style, float width) {
+    Layer& layer = layer_of(style);
+    const std::size_t k = index(x, y) / kLanes;
+    Lanes<float>* const t = layer.t.empty() ? nullptr : &layer.t[k];
+    if (ink::draw_borders(codes, reach, 0.5F * width, depths, kMeshBehind, layer.coverage[k], t) &&
+        touched_[k] == 0) {
+        touched_[k] = kTouched;
+    }
 }
 
 void InkTile::finish() {

@@ -10,6 +10,7 @@
 #include <hwy/highway.h>
 
 #include "base/vec.h"
+#include "lines/border_code.h"
 #include "lines/coverage_lanes-inl.h"
 
 #ifndef INK_BLOCK_OFFSETS
@@ -289,6 +290,41 @@ void draw_soft_batch(const InkBatch& batch, std::span<const float> profile) {
     }
 }
 
+/// More than half a diagonal of a pixel: farther from a band no pixel gets ink.
+constexpr float kBeyondBand = 0.75F;
+
+bool draw_border_lanes(const Lanes<std::uint32_t>& codes, float reach, float half,
+                       const Lanes<float>* depths, float behind, Lanes<float>& coverage,
+                       Lanes<float>* nearest) {
+    const hn::RebindToUnsigned<Floats> numbers;
+    bool any = false;
+    for (int i = 0; i < kLanes; i += kStep) {
+        const auto code = hn::Load(numbers, codes.data() + i);
+        const auto part = [&](auto bits) HWY_ATTR {
+            return hn::ConvertTo(kFloats, hn::BitCast(kIntegers, bits));
+        };
+        const Number distance =
+            hn::Mul(part(hn::ShiftRight<16>(code)), set(reach / BorderCode::kSteps));
+        if (hn::AllTrue(kFloats, hn::Ge(distance, set(half + kBeyondBand)))) continue;
+        any = true;
+        const Number narrow = hn::Mul(part(hn::And(code, hn::Set(numbers, 0xFFFFU))),
+                                      set(BorderCode::kMostNarrow / BorderCode::kSteps));
+        const Number wide = hn::Sqrt(hn::Sub(set(1.0F), hn::Mul(narrow, narrow)));
+        const SquareCoverage area(wide, narrow);
+        const Number ink =
+            hn::Sub(area(hn::Sub(set(half), distance)), area(hn::Sub(set(-half), distance)));
+        float* most = coverage.data() + i;
+        hn::Store(hn::Max(hn::Load(kFloats, most), ink), kFloats, most);
+        if (nearest == nullptr) continue;
+        float* const t = nearest->data() + i;
+        const auto inked = hn::Gt(ink, hn::Zero(kFloats));
+        const Number own = hn::Add(load(*depths, i), set(behind));
+        hn::Store(hn::Min(hn::Load(kFloats, t), hn::IfThenElse(inked, own, set(kInfinity))),
+                  kFloats, t);
+    }
+    return any;
+}
+
 }  // namespace ink::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
@@ -296,10 +332,18 @@ HWY_AFTER_NAMESPACE();
 
 namespace ink {
 
+HWY_EXPORT(draw_border_lanes);
 HWY_EXPORT(draw_solid_batch);
 HWY_EXPORT(draw_soft_batch);
 
 void draw_solid(const InkBatch& batch) { HWY_DYNAMIC_DISPATCH(draw_solid_batch)(batch); }
+
+bool draw_borders(const Lanes<std::uint32_t>& codes, float reach, float half,
+                  const Lanes<float>* depths, float behind, Lanes<float>& coverage,
+                  Lanes<float>* nearest) {
+    return HWY_DYNAMIC_DISPATCH(draw_border_lanes)(codes, reach, half, depths, behind, coverage,
+                                                   nearest);
+}
 
 void draw_soft(const InkBatch& batch, std::span<const float> profile) {
     HWY_DYNAMIC_DISPATCH(draw_soft_batch)(batch, profile);

@@ -45,6 +45,13 @@ struct InkBatch {
 /// so no end claims more than the band, or it would widen the lines that go on from it.
 void draw_solid(const InkBatch& batch);
 
+/// Inks 4 x 4 pixels with the bands along the borders of what they see, each by its area under the
+/// nearest one. `codes` are BorderCodes of distances up to `reach`. Where there is ink, `nearest`
+/// becomes at most `depths` plus `behind`; both null: not wanted. False if there is none.
+bool draw_borders(const Lanes<std::uint32_t>& codes, float reach, float half,
+                  const Lanes<float>* depths, float behind, Lanes<float>& coverage,
+                  Lanes<float>* nearest);
+
 /// Inks each pixel by the distance of its centre from the line: `profile` holds strengths for
 /// equal steps of distance from 0 to half the width, and a last 0 for all beyond.
 void draw_soft(const InkBatch& batch, std::span<const float> profile);

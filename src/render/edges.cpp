@@ -158,6 +158,18 @@ bool Edges::outlines_cover_faces() const {
            covers(LineType::self_occlusion) && covers(LineType::boundary);
 }
 
+/// Along open edges there is a line in any case, so that it does not matter that these are borders
+/// as well.
+bool Edges::draws_borders() const {
+    return wants_faces() && q == 1 && pipeline.frame->measures_borders() &&
+           outlines_cover_faces() && !cues_depth() && !pipeline.lines.segments &&
+           ink.profile.kind == Metric::Kind::solid &&
+           std::ranges::all_of(pipeline.scene.objects(), [](const Object& object) {
+               const auto* mesh = std::get_if<Mesh>(&object.shape);
+               return mesh == nullptr || mesh->faces.empty();
+           });
+}
+
 std::size_t Edges::find_style(const Segment& segment) const {
     const auto type = static_cast<std::size_t>(segment.type);
     const bool by_object = styles_by_object && segment.owner != kBackground;

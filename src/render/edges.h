@@ -57,6 +57,9 @@ struct Edges {
     /// Whether the line where a face goes out of sight covers all that its edges behind it could
     /// ink, so that lines between faces need not end there.
     bool outlines_cover_faces() const;
+    /// Whether lines between faces are drawn from BorderMap: if it is all the same which faces
+    /// they lie between, and each triangle is a face.
+    bool draws_borders() const;
     bool wants_ridges() const { return find_lines && wanted.has(LineType::ridge) && !balls_only; }
 
     /// Whether both sides of a line belong to one whole, where that makes a difference.

@@ -161,7 +161,14 @@ FoundLines find_lines(const Edges& edges, WorkLoop& loop, RenderStats& stats) {
     found.tiles.resize(edges.search_tiles.size());
     found.toned.resize(edges.search_tiles.size());
     found.hidden.resize(edges.search_tiles.size());
-    if (edges.wants_faces()) found.faces.emplace(pipeline.scene, pipeline.settings.size, edges.q);
+    if (edges.draws_borders()) {
+        found.borders.emplace(pipeline.settings.size, edges.ink.reach(),
+                              edges.ink.has_several_inks());
+    } else if (edges.wants_faces()) {
+        found.faces.emplace(pipeline.scene, pipeline.settings.size, edges.q);
+    }
+    const FaceMaps maps{found.faces ? &*found.faces : nullptr,
+                        found.borders ? &*found.borders : nullptr};
     std::optional<RidgeSearch> ridges;
     if (edges.wants_ridges()) {
         ridges.emplace(pipeline, edges.viewpoint, edges.q, edges.search_area());
@@ -171,8 +178,8 @@ FoundLines find_lines(const Edges& edges, WorkLoop& loop, RenderStats& stats) {
     std::vector<std::unique_ptr<HiddenLineFinder>> behind(pool);
     loop.run(edges.search_tiles.size(), [&](std::size_t i, std::size_t worker) {
         if (!finders[worker]) {
-            finders[worker] = std::make_unique<LineFinder>(
-                edges, found.faces ? &*found.faces : nullptr, ridges ? &*ridges : nullptr);
+            finders[worker] =
+                std::make_unique<LineFinder>(edges, maps, ridges ? &*ridges : nullptr);
         }
         found.tiles[i] = finders[worker]->search(edges.search_tiles[i]);
         if (edges.tones) found.toned[i] = finders[worker]->take_toned();
@@ -216,9 +223,9 @@ void draw_lines(const Edges& edges, const FoundLines& found, WorkLoop& loop, Ren
     std::vector<std::unique_ptr<LineDrawer>> drawers(static_cast<std::size_t>(loop.threads()));
     loop.run(edges.draw_tiles.size(), [&](std::size_t i, std::size_t worker) {
         if (!drawers[worker]) {
-            drawers[worker] = std::make_unique<LineDrawer>(edges, found.thinning,
-                                                           found.faces ? &*found.faces : nullptr,
-                                                           vertices ? &*vertices : nullptr);
+            drawers[worker] = std::make_unique<LineDrawer>(
+                edges, found.thinning, found.faces ? &*found.faces : nullptr,
+                vertices ? &*vertices : nullptr, found.borders ? &*found.borders : nullptr);
         }
         drawers[worker]->draw(edges.draw_tiles[i], found.tiles);
     });

@@ -5,6 +5,7 @@
 
 #include "lines/density.h"
 #include "lines/segment.h"
+#include "render/border_map.h"
 #include "render/edges.h"
 #include "render/face_map.h"
 #include "render/pipeline.h"
@@ -18,6 +19,7 @@ struct FoundLines {
     std::vector<std::vector<Segment>> hidden;  ///< likewise, on surfaces behind
     LineThinning thinning;                     ///< where they are dense
     std::optional<FaceMap> faces;              ///< for lines between faces
+    std::optional<BorderMap> borders;          ///< likewise, instead
 };
 
 /// Shades the film and finds its lines.

@@ -20,7 +20,7 @@ void LineDrawer::draw(const Tile& tile, const std::vector<TileLines>& found) {
     {
         const Timer phase(stats_.ink_ms);
         gather(tile, found);
-        if (near_.empty() && !face_edges_) return;
+        if (near_.empty() && !face_edges_ && borders_ == nullptr) return;
         ink_.begin(tile.x0, tile.y0, tile.x1 - tile.x0, tile.y1 - tile.y0);
         thinning_.scales_at(middles_, scales_);
         for (std::size_t k = 0; k < near_.size(); ++k) {
@@ -30,6 +30,7 @@ void LineDrawer::draw(const Tile& tile, const std::vector<TileLines>& found) {
             if (stroke.gap > 0.0F) leave_gap(stroke);
         }
         if (face_edges_) ink_faces(tile);
+        if (borders_ != nullptr) ink_borders(tile);
         ink_.finish();
     }
     write(tile);
@@ -141,6 +142,27 @@ void LineDrawer::ink_faces(const Tile& tile) {
         ink_.draw_faces(x - tile.x0, y - tile.y0, edges.distance, edges.nx, edges.ny, edges.t,
                         strength, style, width);
     });
+}
+
+void LineDrawer::ink_borders(const Tile& tile) {
+    middles_.clear();
+    for (int y = tile.y0; y < tile.y1; y += kBlockSide) {
+        for (int x = tile.x0; x < tile.x1; x += kBlockSide) {
+            if (!borders_->sees(x, y)) continue;
+            middles_.push_back({static_cast<float>(x) + 0.5F * kBlockSide,
+                                static_cast<float>(y) + 0.5F * kBlockSide});
+        }
+    }
+    scales_.resize(middles_.size());
+    thinning_.scales_at(middles_, scales_);
+    const std::size_t style = edges_.style_of(LineType::mesh, 0);
+    const float width = edges_.ink.styles[style].width_px;
+    for (std::size_t k = 0; k < middles_.size(); ++k) {
+        const auto x = static_cast<int>(middles_[k].x) - kBlockSide / 2;
+        const auto y = static_cast<int>(middles_[k].y) - kBlockSide / 2;
+        ink_.draw_borders(x - tile.x0, y - tile.y0, borders_->codes(x, y), borders_->reach(),
+                          borders_->depths(x, y), style, width * scales_[k]);
+    }
 }
 
 void LineDrawer::write_planes(const Tile& tile, const std::vector<TileLines>& found) {

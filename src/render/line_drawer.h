@@ -9,6 +9,7 @@
 #include "lines/density.h"
 #include "lines/ink.h"
 #include "lines/line_planes.h"
+#include "render/border_map.h"
 #include "render/edges.h"
 #include "render/face_edges.h"
 #include "render/tiles.h"
@@ -18,10 +19,11 @@ namespace ink {
 /// Draws the lines of one tile after another.
 class LineDrawer {
   public:
-    /// `faces` and `vertices` are what lines between faces are drawn from; null if there are none.
+    /// `faces` and `vertices`, or `borders`, are what lines between faces are drawn from; null if
+    /// there are none.
     LineDrawer(const Edges& edges, const LineThinning& thinning, const FaceMap* faces,
-               const ScreenVertices* vertices)
-        : edges_(edges), thinning_(thinning), ink_(edges.ink) {
+               const ScreenVertices* vertices, const BorderMap* borders)
+        : edges_(edges), thinning_(thinning), ink_(edges.ink), borders_(borders) {
         if (faces == nullptr) return;
         face_edges_.emplace(edges.pipeline.camera.projection(), *faces, *vertices);
         faces_ = faces;
@@ -43,12 +45,14 @@ class LineDrawer {
     template <class Draw>
     void for_each_face_block(const Tile& tile, Draw draw);
     void ink_faces(const Tile& tile);
+    void ink_borders(const Tile& tile);
     void write_planes(const Tile& tile, const std::vector<TileLines>& found);
     void add_face_planes(const Tile& tile);
 
     const Edges& edges_;
     const LineThinning& thinning_;
     InkTile ink_;
+    const BorderMap* borders_;
     const FaceMap* faces_ = nullptr;
     std::optional<FaceEdges> face_edges_;
     LinePlanes planes_;

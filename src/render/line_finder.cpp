@@ -106,6 +106,8 @@ void LineFinder::trace_lattice(const Tile& tile) {
         const std::size_t count = std::min(kRun, blocks_.size() - first);
         take(first, count);
         timer.lap(stats_.trace_ms);
+        if (borders_ != nullptr) map_borders(first, count);
+        timer.lap(stats_.lines_ms);
         if (front_) shade(first, count);
         timer.lap(stats_.shade_ms);
     }

@@ -14,6 +14,7 @@
 #include "lines/mesh_locator.h"
 #include "lines/segment.h"
 #include "lines/tones.h"
+#include "render/border_map.h"
 #include "render/edges.h"
 #include "render/face_map.h"
 #include "render/ridge_search.h"
@@ -25,18 +26,24 @@
 
 namespace ink {
 
+/// Where to put what lines between faces are drawn from: one of the two, or neither.
+struct FaceMaps {
+    FaceMap* faces = nullptr;
+    BorderMap* borders = nullptr;
+};
+
 /// Finds the lines of one tile after another. Arrays over blocks have one entry a block that is
 /// near the scene.
 class LineFinder {
   public:
-    /// `faces`: where to put what lines between faces are drawn from; `ridges`: what keeps the
-    /// samples that ridges are found from. Null if there are none.
-    explicit LineFinder(const Edges& edges, FaceMap* faces = nullptr, RidgeSearch* ridges = nullptr)
-        : LineFinder(edges, *edges.pipeline.frame, true, faces, ridges) {}
+    /// `ridges`: what keeps the samples that ridges are found from; null if there are none.
+    explicit LineFinder(const Edges& edges, const FaceMaps& maps = {},
+                        RidgeSearch* ridges = nullptr)
+        : LineFinder(edges, *edges.pipeline.frame, true, maps, ridges) {}
 
     /// On other surfaces than the nearest ones: what lies behind them is not shaded.
     LineFinder(const Edges& edges, const FrameTracer& behind)
-        : LineFinder(edges, behind, false, nullptr, nullptr) {}
+        : LineFinder(edges, behind, false, {}, nullptr) {}
 
     /// Traces the lattice, detects, locates and connects; shades the tile's pixels on the way.
     TileLines search(const Tile& tile);
@@ -71,13 +78,14 @@ class LineFinder {
     }
 
   private:
-    LineFinder(const Edges& edges, const FrameTracer& frame, bool front, FaceMap* faces,
+    LineFinder(const Edges& edges, const FrameTracer& frame, bool front, const FaceMaps& maps,
                RidgeSearch* ridges)
         : edges_(edges),
           front_(front),
           ids_only_(front && edges.balls_only),
-          faces_(faces),
-          faces_end_(faces != nullptr && !edges.outlines_cover_faces()),
+          faces_(maps.faces),
+          borders_(maps.borders),
+          faces_end_(faces_ != nullptr && !edges.outlines_cover_faces()),
           ridges_(ridges),
           sampler_(frame, edges.pipeline.camera, edges.q),
           pixel_sampler_(frame, edges.pipeline.camera),
@@ -109,6 +117,7 @@ class LineFinder {
           density_(edges.no_lines),
           direct_density_(edges.no_lines) {
         if (front && edges.pipeline.goes_on()) specular_.emplace(edges);
+        if (borders_ != nullptr) sampler_.want_borders();
     }
 
     void trace_lattice(const Tile& tile);
@@ -151,6 +160,7 @@ class LineFinder {
     bool see_ball(int i, int j, BallHit& hit) const;
     bool see_mesh(int i, int j, SurfaceKey& key) const;
     void identify(std::span<const Vec2f> points, std::span<SurfaceKey> out);
+    void map_borders(std::size_t first, std::size_t count);
     void map_faces(const Tile& tile);
     void map_block(int x, int y);
     void add_face_density(std::size_t block);
@@ -192,6 +202,7 @@ class LineFinder {
     bool ids_only_;
     bool saw_anything_ = false;
     FaceMap* faces_;
+    BorderMap* borders_;
     bool faces_end_;  ///< lines between faces end where another line is in front
     RidgeSearch* ridges_;
     Sampler sampler_;
@@ -211,6 +222,7 @@ class LineFinder {
     std::vector<std::uint32_t> strips_down_, strips_across_;  ///< of the last column and row
     std::vector<Block> blocks_;
     std::vector<HitPacket> hits_;
+    std::vector<BorderPacket> border_packets_;
     std::vector<NormalPacket> normals_;
     std::vector<ColorPacket> colors_;
     std::vector<std::uint8_t> seen_;

@@ -10,6 +10,19 @@
 
 namespace ink {
 
+/// Keeps how far the points of some blocks are from the borders of their faces.
+void LineFinder::map_borders(std::size_t first, std::size_t count) {
+    border_packets_.resize(count);
+    sampler_.take_borders(first, border_packets_);
+    for (std::size_t k = 0; k < count; ++k) {
+        const Block& block = blocks_[first + k];
+        // Those cut off at the tile's end belong to the next tile, which may be at work.
+        if (block.columns < kBlockSide || block.rows < kBlockSide) continue;
+        add_face_density(first + k);
+        borders_->put(block.x, block.y, border_packets_[k], hits_[first + k].t);
+    }
+}
+
 /// Keeps what pixel centres, or the lattice points next to them, see.
 void LineFinder::map_faces(const Tile& tile) {
     const Timer timer(stats_.lines_ms);
@@ -65,7 +78,9 @@ void LineFinder::add_face_density(std::size_t block) {
 
 /// Whether any line between faces must be a crossing.
 bool LineFinder::crosses_faces() const {
-    return faces_ != nullptr && (faces_end_ || edges_.pipeline.lines.drawing != nullptr);
+    const bool data = edges_.pipeline.lines.drawing != nullptr;
+    return (faces_ != nullptr && faces_end_) ||
+           (data && (faces_ != nullptr || borders_ != nullptr));
 }
 
 /// Lines between the faces of meshes, in the cells through which other lines run, unless these

@@ -114,10 +114,19 @@ void Sampler::find_blocks(std::span<const Block> blocks, Vec2f offset) {
     }
     make_room();
     // A few blocks find their own way faster.
-    constexpr std::ptrdiff_t kFew = 4;
+    const std::ptrdiff_t few = wants_borders_ ? 0 : 4;
     const auto strips = std::ranges::find_if(blocks, &Block::is_strip);
-    found_ = strips - blocks.begin() > kFew;
+    found_ = strips - blocks.begin() > few;
     if (found_) tracer_->find(raster_of({blocks.begin(), strips}, offset), points());
+}
+
+void Sampler::want_borders() {
+    wants_borders_ = true;
+    tracer_->want_borders();
+}
+
+void Sampler::take_borders(std::size_t first, std::span<BorderPacket> borders) {
+    if (found_) tracer_->measure(first, borders);
 }
 
 void Sampler::take_hits(std::size_t first, std::span<HitPacket> hits) {

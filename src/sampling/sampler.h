@@ -50,6 +50,10 @@ class Sampler {
     /// with a few blocks finds them in the nearest cache.
     void find_blocks(std::span<const Block> blocks, Vec2f offset);
     void take_hits(std::size_t first, std::span<HitPacket> hits);
+    /// Likewise, from `want_borders` on, how far their points are from the borders of the triangles
+    /// that they hit; those of strips are left out. Only if the frame can tell.
+    void want_borders();
+    void take_borders(std::size_t first, std::span<BorderPacket> borders);
 
     /// The ray stencils of a block's samples at the lattice points plus `offset`: one packet for
     /// each of the stencil's points. The pixels of a block share the point, which keeps the rays of
@@ -96,9 +100,10 @@ class Sampler {
     const Camera& camera_;
     float spacing_;
     ScreenBox area_{kInfinity, kInfinity, -kInfinity, -kInfinity};
-    std::vector<PointPacket> points_;   ///< those of the last call, and room for more
-    std::size_t placed_ = 0;            ///< in the last call
-    std::vector<RayPacket> packets_;    ///< likewise
+    std::vector<PointPacket> points_;  ///< those of the last call, and room for more
+    std::size_t placed_ = 0;           ///< in the last call
+    std::vector<RayPacket> packets_;   ///< likewise
+    bool wants_borders_ = false;
     bool found_ = false;                ///< by find_blocks: hits need only be taken
     std::vector<std::uint32_t> cells_;  ///< of a raster of blocks
     std::vector<std::uint32_t> order_;

@@ -1,0 +1,52 @@
+#include "render/border_map.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/multiversion.h"
+
+namespace ink {
+
+namespace {
+
+/// False if all are out of reach.
+INKTRACE_MULTIVERSION
+bool encode(const BorderPacket& borders, float reach, Lanes<std::uint32_t>& codes) {
+    std::int32_t near = 0;
+    for (int i = 0; i < kLanes; ++i) near |= borders.distance[i] < reach ? 1 : 0;
+    if (near == 0) return false;
+    const float steps = BorderCode::kSteps / reach;
+    constexpr float kNarrowSteps = BorderCode::kSteps / BorderCode::kMostNarrow;
+    for (int i = 0; i < kLanes; ++i) {
+        const float distance = std::min(borders.distance[i] * steps, BorderCode::kSteps);
+        const float narrow = std::min(std::abs(borders.nx[i]), std::abs(borders.ny[i]));
+        const float narrow_steps = std::min(narrow * kNarrowSteps, BorderCode::kSteps);
+        const auto high = static_cast<std::uint32_t>(static_cast<std::int32_t>(distance + 0.5F));
+        const auto low = static_cast<std::uint32_t>(static_cast<std::int32_t>(narrow_steps + 0.5F));
+        codes[i] = high << 16U | low;
+    }
+    return true;
+}
+
+}  // namespace
+
+BorderMap::BorderMap(Size size, float reach, bool depths)
+    : size_(size),
+      reach_(reach),
+      blocks_across_((size.width + kBlockSide - 1) / kBlockSide),
+      seen_(static_cast<std::size_t>(blocks_across_) *
+            static_cast<std::size_t>((size.height + kBlockSide - 1) / kBlockSide)),
+      codes_(seen_.size()),
+      depths_(depths ? seen_.size() : 0) {
+    use_large_pages(codes_.data(), codes_.size() * sizeof(codes_[0]));
+}
+
+void BorderMap::put(int x, int y, const BorderPacket& borders, const Lanes<float>& t) {
+    if (x < 0 || y < 0 || x >= size_.width || y >= size_.height) return;
+    const std::size_t k = block(x, y);
+    if (!encode(borders, reach_, codes_[k])) return;
+    seen_[k] = 1;
+    if (!depths_.empty()) depths_[k] = t;
+}
+
+}  // namespace ink

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "accel/tracer.h"
+#include "base/image.h"
+#include "base/lanes.h"
+#include "base/memory.h"
+#include "lines/border_code.h"
+
+namespace ink {
+
+/// How far the pixels of a picture are from the borders of the triangles that they see: all that
+/// lines between these are drawn from, if each triangle is a face. Filled tile by tile by the pass
+/// that finds lines, for the pass that draws them; threads write disjoint blocks of 4 x 4 pixels.
+class BorderMap {
+  public:
+    /// Distances up to `reach`, pixels. `depths`: whether they are kept, too.
+    BorderMap(Size size, float reach, bool depths);
+
+    /// What 4 x 4 pixels see, `t` along their rays; blocks beyond the picture are dropped.
+    void put(int x, int y, const BorderPacket& borders, const Lanes<float>& t);
+
+    /// Whether any of the 4 x 4 pixels at (x, y) is within reach of a border.
+    bool sees(int x, int y) const { return seen_[block(x, y)] != 0; }
+    /// What they see, each as a BorderCode; only if any is.
+    const Lanes<std::uint32_t>& codes(int x, int y) const { return codes_[block(x, y)]; }
+    /// Along their rays; null if they are not kept.
+    const Lanes<float>* depths(int x, int y) const {
+        return depths_.empty() ? nullptr : &depths_[block(x, y)];
+    }
+    float reach() const { return reach_; }
+
+  private:
+    template <class T>
+    using Plane = std::vector<Lanes<T>, UninitializedAllocator<Lanes<T>>>;
+
+    std::size_t block(int x, int y) const {
+        return static_cast<std::size_t>(y / kBlockSide) * static_cast<std::size_t>(blocks_across_) +
+               static_cast<std::size_t>(x / kBlockSide);
+    }
+
+    Size size_;
+    float reach_;
+    int blocks_across_;
+    std::vector<std::uint8_t> seen_;  ///< a block
+    Plane<std::uint32_t> codes_;
+    Plane<float> depths_;
+};
+
+}  // namespace ink
