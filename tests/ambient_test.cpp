@@ -16,6 +16,7 @@
 #include "render/render.h"
 #include "sampling/sampler.h"
 #include "scenes.h"
+#include "shading/ball_sky.h"
 #include "shading/ray_sky.h"
 #include "shading/secondary_rays.h"
 
@@ -148,6 +149,37 @@ TEST(AmbientOcclusion, GetsBetterWithQuality) {
     const double high = error(scene, 256, 40, 5);
     EXPECT_LT(high, 0.6 * low);
     EXPECT_LT(high, 0.02);
+}
+
+TEST(BallSky, ContactsLeaveTheSameOpenToSixteenPointsAsToEach) {
+    std::mt19937 random(11);
+    const auto any_way = [&] {
+        return normalize(uniform_point(random) * 2.0F - Vec3f{1.0F, 1.0F, 1.0F});
+    };
+    for (int used = 0; used <= kLanes; ++used) {
+        BallPacket contacts{};
+        for (int i = 0; i < used; ++i) {
+            const Vec3f towards = any_way();
+            contacts.radius[i] = 0.2F + uniform(random);
+            const float distance = 1.0F + contacts.radius[i] * (0.6F + 0.6F * uniform(random));
+            contacts.x[i] = towards.x * distance;
+            contacts.y[i] = towards.y * distance;
+            contacts.z[i] = towards.z * distance;
+        }
+        NormalPacket normals{};
+        for (int i = 0; i < kLanes; ++i) {
+            const Vec3f n = any_way();
+            normals.x[i] = n.x;
+            normals.y[i] = n.y;
+            normals.z[i] = n.z;
+        }
+        Lanes<float> open;
+        BallSky::contact_openness(contacts, 1.0F, normals, open);
+        for (int i = 0; i < kLanes; ++i) {
+            const Vec3f n{normals.x[i], normals.y[i], normals.z[i]};
+            ASSERT_EQ(open[i], BallSky::contact_openness(contacts, 1.0F, n));
+        }
+    }
 }
 
 TEST(AmbientOcclusion, OfOneBallIsNone) {

@@ -58,6 +58,11 @@ Vec3f fold(Vec2f p) {
     return normalize(Vec3f{p.x - std::copysign(under, p.x), p.y - std::copysign(under, p.y), z});
 }
 
+template <class Body>
+void for_lanes(std::uint32_t lanes, const Body& body) {
+    for (; lanes != 0; lanes &= lanes - 1) body(std::countr_zero(lanes));
+}
+
 /// A triangle's corners and the normals there, which face the side that is seen.
 struct Corners {
     std::array<Vec3f, 3> points, normals;
@@ -160,7 +165,16 @@ struct AmbientBake::Impl {
     static constexpr float kRaise = 0.1F;  ///< keeps quotients small where both are
     Surroundings& surroundings(const Sphere& ball, std::size_t ball_number) const;
     BallBake& bake_of(const Sphere& ball, std::size_t ball_number) const;
-    float on_ball(std::uint32_t object, std::uint32_t primitive, Vec3f n, float radius_px) const;
+    /// Whether every point is computed of balls of this size.
+    bool each_point(float radius_px) const {
+        // Towards strings, which have many balls that touch, quotients do not vary slowly.
+        return ball_sky && (strings || radius_px < kLeastBallGrid);
+    }
+    float at_point(const Sphere& ball, std::size_t ball_number, Vec3f n) const {
+        return ball_sky->openness(ball, surroundings(ball, ball_number), n * ball.radius, n);
+    }
+    void on_ball(const Sphere& ball, std::size_t ball_number, float radius_px, std::uint32_t lanes,
+                 const NormalPacket& normals, Lanes<float>& open) const;
     float on_stick(std::uint32_t object, std::uint32_t primitive, Vec3f point, Vec3f n) const;
     float on_triangle(const HitPacket& hits, int lane, const Corners& corners,
                       float footprint) const;
@@ -200,45 +214,46 @@ AmbientBake::Impl::BallBake& AmbientBake::Impl::bake_of(const Sphere& ball,
     });
 }
 
-float AmbientBake::Impl::on_ball(std::uint32_t object, std::uint32_t primitive, Vec3f n,
-                                 float radius_px) const {
-    const Sphere ball = std::get<Spheres>(scene.objects()[object].shape).at(primitive);
-    const std::size_t ball_number = first_ball[object] + primitive;
-    // Towards strings, which have many balls that touch, quotients do not vary slowly.
-    if (ball_sky && (strings || radius_px < kLeastBallGrid)) {
-        return ball_sky->openness(ball, surroundings(ball, ball_number), n * ball.radius, n);
-    }
+/// Of lanes that see one large ball, between nodes.
+void AmbientBake::Impl::on_ball(const Sphere& ball, std::size_t ball_number, float radius_px,
+                                std::uint32_t lanes, const NormalPacket& normals,
+                                Lanes<float>& open) const {
     const std::size_t level = grid_for(ball_nodes(radius_px), kBallGrids, ball_side);
     const int side = ball_side(level);
     const auto nodes = static_cast<std::size_t>((side + 1) * (side + 1));
     BallBake& bake = bake_of(ball, ball_number);
     const auto grid = bake.maps.grid(level, nodes);
-    const Vec2f place = unfold(n);
     const auto half = 0.5F * static_cast<float>(side);
-    const float x = (place.x + 1.0F) * half;
-    const float y = (place.y + 1.0F) * half;
-    const int i = std::clamp(static_cast<int>(x), 0, side - 1);
-    const int j = std::clamp(static_cast<int>(y), 0, side - 1);
-    const auto at_contacts = [&](Vec3f at) {
-        return BallSky::contact_openness(bake.contacts, ball.radius, at) + kRaise;
+    const auto compute = [&](int column, int row) {
+        const Vec3f at =
+            fold({static_cast<float>(column) / half - 1.0F, static_cast<float>(row) / half - 1.0F});
+        if (!ball_sky) return rays.openness(ball.centre + at * ball.radius, at);
+        return (at_point(ball, ball_number, at) + kRaise) /
+               (BallSky::contact_openness(bake.contacts, ball.radius, at) + kRaise);
     };
     const auto value = [&](int column, int row) {
-        return grid.value(static_cast<std::size_t>(row * (side + 1) + column), [&] {
-            const Vec3f at = fold(
-                {static_cast<float>(column) / half - 1.0F, static_cast<float>(row) / half - 1.0F});
-            if (!ball_sky) return rays.openness(ball.centre + at * ball.radius, at);
-            const float open =
-                ball_sky->openness(ball, surroundings(ball, ball_number), at * ball.radius, at);
-            return (open + kRaise) / at_contacts(at);
-        });
+        return grid.value(static_cast<std::size_t>(row * (side + 1) + column),
+                          [&] { return compute(column, row); });
     };
-    const float a = x - static_cast<float>(i);
-    const float b = y - static_cast<float>(j);
-    const float top = value(i, j) + a * (value(i + 1, j) - value(i, j));
-    const float bottom = value(i, j + 1) + a * (value(i + 1, j + 1) - value(i, j + 1));
-    const float mean = top + b * (bottom - top);
-    if (!ball_sky) return mean;
-    return std::clamp(mean * at_contacts(n) - kRaise, 0.0F, 1.0F);
+    for_lanes(lanes, [&](int lane) {
+        const Vec2f place = unfold({normals.x[lane], normals.y[lane], normals.z[lane]});
+        const float x = (place.x + 1.0F) * half;
+        const float y = (place.y + 1.0F) * half;
+        const int i = std::clamp(static_cast<int>(x), 0, side - 1);
+        const int j = std::clamp(static_cast<int>(y), 0, side - 1);
+        const float a = x - static_cast<float>(i);
+        const float b = y - static_cast<float>(j);
+        const float top = value(i, j) + a * (value(i + 1, j) - value(i, j));
+        const float bottom = value(i, j + 1) + a * (value(i + 1, j + 1) - value(i, j + 1));
+        open[lane] = top + b * (bottom - top);
+    });
+    if (!ball_sky) return;
+    Lanes<float> at_contacts;
+    BallSky::contact_openness(bake.contacts, ball.radius, normals, at_contacts);
+    for_lanes(lanes, [&](int lane) {
+        const float raised = open[lane] * (at_contacts[lane] + kRaise);
+        open[lane] = std::clamp(raised - kRaise, 0.0F, 1.0F);
+    });
 }
 
 float AmbientBake::Impl::on_stick(std::uint32_t object, std::uint32_t primitive, Vec3f point,
@@ -336,11 +351,6 @@ class Footprints {
     float pixel_;
 };
 
-template <class Body>
-void for_lanes(std::uint32_t lanes, const Body& body) {
-    for (; lanes != 0; lanes &= lanes - 1) body(std::countr_zero(lanes));
-}
-
 /// Lanes that see the same primitive as one.
 std::uint32_t same_surface(const HitPacket& hits, int lane) {
     std::uint32_t same = 0;
@@ -396,31 +406,44 @@ class SeenBake final : public AmbientOcclusion {
             rest &= ~own;
             if (hits.object[first] == kNoObject) {
                 for_lanes(own, [&](int i) { open[i] = 1.0F; });
+            } else if (std::holds_alternative<Spheres>(shape_of(hits, first))) {
+                find_on_ball(surface, own, open);
             } else {
-                find(surface, own, open);
+                for_lanes(own, [&](int i) { open[i] = at(surface, i); });
             }
         }
     }
 
   private:
-    /// Of lanes that see one primitive. On small balls what lies between two pixels that nearly
-    /// agree is not computed.
-    void find(const SurfacePacket& surface, std::uint32_t own, Lanes<float>& open) const {
+    /// Of lanes that see one ball. Where every point is computed, on small balls, what lies between
+    /// two pixels that nearly agree is not.
+    void find_on_ball(const SurfacePacket& surface, std::uint32_t own, Lanes<float>& open) const {
         const HitPacket& hits = surface.hits;
         const int any = std::countr_zero(own);
-        const bool spares =
-            bake_.ball_sky && !bake_.strings && radius_px(hits, any) < kLeastBallGrid;
+        const std::uint32_t primitive = hits.primitive[any];
+        const Sphere ball = std::get<Spheres>(shape_of(hits, any)).at(primitive);
+        const std::size_t ball_number = bake_.first_ball[hits.object[any]] + primitive;
+        const float radius_px = ball.radius / footprints_.at(ball.centre);
+        const NormalPacket& normals = surface.normals;
+        if (!bake_.each_point(radius_px)) {
+            bake_.on_ball(ball, ball_number, radius_px, own, normals, open);
+            return;
+        }
+        const auto at_point = [&](int i) {
+            return bake_.at_point(ball, ball_number, {normals.x[i], normals.y[i], normals.z[i]});
+        };
         const PointPacket& at_screen = surface.points;
         const bool is_block =
             at_screen.x[kBlockSide] == at_screen.x[0] && at_screen.y[1] == at_screen.y[0];
-        const std::uint32_t between = spares ? own & (is_block ? kBetween : kBetweenInStrip) : 0U;
-        for_lanes(own & ~between, [&](int i) { open[i] = at(surface, i); });
+        const std::uint32_t spared = is_block ? kBetween : kBetweenInStrip;
+        const std::uint32_t between = bake_.strings ? 0U : own & spared;
+        for_lanes(own & ~between, [&](int i) { open[i] = at_point(i); });
         for_lanes(between, [&](int i) {
             float sum = 0.0F;
             float pairs = 0.0F;
             const auto add = [&](int a, int b) {
                 if (!has(own, a) || !has(own, b)) return;
-                const auto found = between_two(surface.normals, open, a, i, b);
+                const auto found = between_two(normals, open, a, i, b);
                 if (!found) return;
                 sum += *found;
                 pairs += 1.0F;
@@ -430,24 +453,19 @@ class SeenBake final : public AmbientOcclusion {
             if (is_block && i / kBlockSide != 0 && i / kBlockSide != kBlockSide - 1) {
                 add(i - kBlockSide, i + kBlockSide);
             }
-            open[i] = pairs > 0.0F ? std::min(sum / pairs, 1.0F) : at(surface, i);
+            open[i] = pairs > 0.0F ? std::min(sum / pairs, 1.0F) : at_point(i);
         });
     }
 
-    /// Of a ball that a lane sees.
-    float radius_px(const HitPacket& hits, int i) const {
-        const Shape& shape = bake_.scene.objects()[hits.object[i]].shape;
-        const Sphere ball = std::get<Spheres>(shape).at(hits.primitive[i]);
-        return ball.radius / footprints_.at(ball.centre);
+    const Shape& shape_of(const HitPacket& hits, int i) const {
+        return bake_.scene.objects()[hits.object[i]].shape;
     }
 
+    /// Of anything but balls.
     float at(const SurfacePacket& surface, int i) const {
         const HitPacket& hits = surface.hits;
-        const Shape& shape = bake_.scene.objects()[hits.object[i]].shape;
+        const Shape& shape = shape_of(hits, i);
         const Vec3f normal{surface.normals.x[i], surface.normals.y[i], surface.normals.z[i]};
-        if (std::holds_alternative<Spheres>(shape)) {
-            return bake_.on_ball(hits.object[i], hits.primitive[i], normal, radius_px(hits, i));
-        }
         if (const auto* mesh = std::get_if<Mesh>(&shape)) {
             const Corners corners = corners_of(*mesh, hits.primitive[i], normal);
             return bake_.on_triangle(hits, i, corners,

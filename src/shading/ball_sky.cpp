@@ -215,4 +215,9 @@ float BallSky::contact_openness(const BallPacket& contacts, float radius, Vec3f 
     return ball_kernels::contact_openness(contacts, radius, n);
 }
 
+void BallSky::contact_openness(const BallPacket& contacts, float radius,
+                               const NormalPacket& normals, Lanes<float>& open) {
+    ball_kernels::contact_openness(contacts, radius, normals, open);
+}
+
 }  // namespace ink

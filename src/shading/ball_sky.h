@@ -8,6 +8,7 @@
 #include "base/vec.h"
 #include "scene/scene.h"
 #include "shading/far_sky.h"
+#include "shading/lighting.h"
 #include "shading/sky_directions.h"
 
 namespace ink {
@@ -43,11 +44,14 @@ class BallSky {
     /// The share of the sky that lies open above a point of the ball, weighted by the cosine to its
     /// normal `n`. `point`, relative to the ball's centre, may lie a little outside.
     float openness(const Sphere& ball, Surroundings& surroundings, Vec3f point, Vec3f n) const;
-    /// The nearest sixteen balls that touch one or nearly do.
+    /// The nearest sixteen balls that touch one or nearly do, in the first lanes.
     static BallPacket contacts(const Sphere& ball, const Surroundings& surroundings);
     /// The product of what each of the contacts alone would leave open: it has the steep fall of
     /// openness towards them, so that what remains varies slowly.
     static float contact_openness(const BallPacket& contacts, float radius, Vec3f n);
+    /// The same at sixteen points at a time.
+    static void contact_openness(const BallPacket& contacts, float radius,
+                                 const NormalPacket& normals, Lanes<float>& open);
 
   private:
     void add_packet(const BallPacket& packet, std::size_t count, std::vector<Sphere>& enclosing);

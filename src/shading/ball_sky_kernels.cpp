@@ -371,6 +371,34 @@ HWY_INLINE Vector arc_cosine(Vector x) {
 
 /// The form factor of a ball that the horizon may cut, in closed form (Snyder, Area Light Sources
 /// for Real-Time Graphics, 1996). Of a ball that holds the point: that of half of the sky.
+/// The centre is relative to the point. One lane may be a ball, or a point, as callers like.
+template <class Vector>
+HWY_INLINE Vector open_of_ball(Vector x, Vector y, Vector z, Vector size, Vector nx, Vector ny,
+                               Vector nz) {
+    const auto one = set(1.0F);
+    const auto squared = hn::Max(sum_of_products(x, x, y, y, z, z), set(1e-20F));
+    const auto up = sum_of_products(x, nx, y, ny, z, nz);
+    const auto limit = set(0.99999F);
+    const auto cosine = hn::Max(hn::Min(hn::Div(up, hn::Sqrt(squared)), limit), hn::Neg(limit));
+    const auto cosine2 = hn::Mul(cosine, cosine);
+    const auto share =  // (radius / distance)^2
+        hn::Min(hn::Div(hn::Mul(size, size), squared), one);
+    const auto whole = hn::Mul(hn::Max(cosine, hn::Zero(kFloats)), share);
+    // h = distance / radius; q^2 = (h^2 - 1) / (1 - cosine^2)
+    const auto inverse = hn::Div(one, hn::Max(share, set(1e-12F)));
+    const auto beyond = hn::Sub(inverse, one);
+    const auto q = hn::Sqrt(hn::Div(beyond, hn::Sub(one, cosine2)));
+    const auto k2 = hn::Sub(one, hn::Mul(inverse, cosine2));
+    const auto cut = hn::Gt(k2, hn::Zero(kFloats));
+    const auto first = arc_cosine(hn::Max(hn::Min(hn::Neg(hn::Mul(cosine, q)), one), hn::Neg(one)));
+    const auto second = arc_cosine(hn::Min(hn::Mul(q, hn::Sqrt(share)), one));
+    const auto root = hn::Sqrt(hn::Mul(hn::Max(k2, hn::Zero(kFloats)), beyond));
+    const auto lens = hn::Mul(hn::Sub(hn::Mul(cosine, first), root), share);
+    const auto part = hn::Mul(hn::Add(lens, second), set(0.318309886F));
+    const auto hidden = hn::IfThenElse(cut, part, whole);
+    return hn::Max(hn::Sub(one, hidden), hn::Zero(kFloats));
+}
+
 float find_contact_openness(const BallPacket& contacts, float radius, Vec3f n) {
     Lanes<float> open;
     for (int i = 0; i < kLanes; i += kStep) {
@@ -378,35 +406,32 @@ float find_contact_openness(const BallPacket& contacts, float radius, Vec3f n) {
         const auto y = hn::Sub(load(contacts.y, i), set(n.y * radius));
         const auto z = hn::Sub(load(contacts.z, i), set(n.z * radius));
         const auto size = load(contacts.radius, i);
-        const auto squared = hn::Max(sum_of_products(x, x, y, y, z, z), set(1e-20F));
-        const auto up = sum_of_products(x, set(n.x), y, set(n.y), z, set(n.z));
-        const auto limit = set(0.99999F);
-        const auto cosine = hn::Max(hn::Min(hn::Div(up, hn::Sqrt(squared)), limit), hn::Neg(limit));
-        const auto cosine2 = hn::Mul(cosine, cosine);
-        const auto share =  // (radius / distance)^2
-            hn::Min(hn::Div(hn::Mul(size, size), squared), set(1.0F));
-        const auto whole = hn::Mul(hn::Max(cosine, hn::Zero(kFloats)), share);
-        // h = distance / radius; q^2 = (h^2 - 1) / (1 - cosine^2)
-        const auto inverse = hn::Div(set(1.0F), hn::Max(share, set(1e-12F)));
-        const auto beyond = hn::Sub(inverse, set(1.0F));
-        const auto q = hn::Sqrt(hn::Div(beyond, hn::Sub(set(1.0F), cosine2)));
-        const auto k2 = hn::Sub(set(1.0F), hn::Mul(inverse, cosine2));
-        const auto cut = hn::Gt(k2, hn::Zero(kFloats));
-        const auto one = set(1.0F);
-        const auto first =
-            arc_cosine(hn::Max(hn::Min(hn::Neg(hn::Mul(cosine, q)), one), hn::Neg(one)));
-        const auto second = arc_cosine(hn::Min(hn::Mul(q, hn::Sqrt(share)), one));
-        const auto root = hn::Sqrt(hn::Mul(hn::Max(k2, hn::Zero(kFloats)), beyond));
-        const auto lens = hn::Mul(hn::Sub(hn::Mul(cosine, first), root), share);
-        const auto part = hn::Mul(hn::Add(lens, second), set(0.318309886F));
-        const auto hidden = hn::IfThenElse(cut, part, whole);
+        const auto left = open_of_ball(x, y, z, size, set(n.x), set(n.y), set(n.z));
         const auto used = hn::Gt(size, hn::Zero(kFloats));
-        const auto left = hn::Max(hn::Sub(one, hidden), hn::Zero(kFloats));
-        store(hn::IfThenElse(used, left, one), open, i);
+        store(hn::IfThenElse(used, left, set(1.0F)), open, i);
     }
     float product = 1.0F;
     for (int i = 0; i < kLanes; ++i) product *= open[i];
     return product;
+}
+
+/// The same products in the same order.
+void find_contact_openness_at(const BallPacket& contacts, float radius, const NormalPacket& normals,
+                              Lanes<float>& open) {
+    for (int i = 0; i < kLanes; i += kStep) {
+        const auto nx = load(normals.x, i);
+        const auto ny = load(normals.y, i);
+        const auto nz = load(normals.z, i);
+        auto product = set(1.0F);
+        for (int k = 0; k < kLanes && contacts.radius[k] > 0.0F; ++k) {
+            const auto x = hn::Sub(set(contacts.x[k]), hn::Mul(nx, set(radius)));
+            const auto y = hn::Sub(set(contacts.y[k]), hn::Mul(ny, set(radius)));
+            const auto z = hn::Sub(set(contacts.z[k]), hn::Mul(nz, set(radius)));
+            const auto size = set(contacts.radius[k]);
+            product = hn::Mul(product, open_of_ball(x, y, z, size, nx, ny, nz));
+        }
+        store(product, open, i);
+    }
 }
 
 }  // namespace ink::ball_kernels::HWY_NAMESPACE
@@ -419,6 +444,7 @@ namespace ink::ball_kernels {
 HWY_EXPORT(find_within);
 HWY_EXPORT(find_openness);
 HWY_EXPORT(find_contact_openness);
+HWY_EXPORT(find_contact_openness_at);
 
 LaneBits within(const BallPacket& balls, Vec3f point, float reach) {
     return HWY_DYNAMIC_DISPATCH(find_within)(balls, point, reach);
@@ -430,6 +456,11 @@ float openness(const SkyView& view, Surroundings& surroundings, Vec3f point, Vec
 
 float contact_openness(const BallPacket& contacts, float radius, Vec3f n) {
     return HWY_DYNAMIC_DISPATCH(find_contact_openness)(contacts, radius, n);
+}
+
+void contact_openness(const BallPacket& contacts, float radius, const NormalPacket& normals,
+                      Lanes<float>& open) {
+    HWY_DYNAMIC_DISPATCH(find_contact_openness_at)(contacts, radius, normals, open);
 }
 
 }  // namespace ink::ball_kernels

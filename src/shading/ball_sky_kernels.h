@@ -25,5 +25,7 @@ float openness(const SkyView& view, Surroundings& surroundings, Vec3f point, Vec
 
 /// BallSky::contact_openness.
 float contact_openness(const BallPacket& contacts, float radius, Vec3f n);
+void contact_openness(const BallPacket& contacts, float radius, const NormalPacket& normals,
+                      Lanes<float>& open);
 
 }  // namespace ink::ball_kernels
