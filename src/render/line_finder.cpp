@@ -106,8 +106,10 @@ void LineFinder::trace_lattice(const Tile& tile) {
         const std::size_t count = std::min(kRun, blocks_.size() - first);
         take(first, count);
         timer.lap(stats_.trace_ms);
-        if (borders_ != nullptr) map_borders(first, count);
-        timer.lap(stats_.lines_ms);
+        if (borders_ != nullptr) {
+            map_borders(first, count);
+            timer.lap(stats_.lines_ms);
+        }
         if (front_) shade(first, count);
         timer.lap(stats_.shade_ms);
     }
@@ -394,9 +396,12 @@ void LineFinder::keep() {
 
 void LineFinder::smooth() {
     const Timer phase(stats_.blend_ms);
-    const auto color = [&](std::uint32_t index) {
-        const auto width = static_cast<std::uint32_t>(grid_.width);
-        return color_at(static_cast<int>(index % width), static_cast<int>(index / width));
+    const auto width = static_cast<std::uint64_t>(grid_.width);
+    // Divides by the width: exact while width times index stays below 2^32.
+    const std::uint64_t per_width = (std::uint64_t{1} << 32U) / width + 1;
+    const auto color = [&](std::uint64_t index) {
+        const std::uint64_t row = (index * per_width) >> 32U;
+        return color_at(static_cast<int>(index - row * width), static_cast<int>(row));
     };
     for (const Segment& segment : segments_) {
         // The two sides of a line on a smooth surface have one colour.
