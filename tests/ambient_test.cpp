@@ -7,6 +7,7 @@
 
 #include <cmath>
 #include <filesystem>
+#include <memory>
 #include <random>
 #include <vector>
 
@@ -83,46 +84,60 @@ bool starts_within_a_ball(const Scene& scene, const Seen& at) {
     return false;
 }
 
-/// Root of the mean square of the difference from 8192 rays.
-double error(const Scene& scene, int side, unsigned one_of, int quality, View view = View::front) {
-    const auto tracer = make_tracer(scene);
-    const AmbientBake bake(scene, *tracer, quality);
-    const RaySky truth(*tracer, 8192);
-    double sum = 0.0;
-    std::vector<Seen> seen = look_at(scene, *tracer, bake, side, one_of, view);
-    std::erase_if(seen, [&](const Seen& at) { return starts_within_a_ball(scene, at); });
-    for (const Seen& at : seen) {
-        const double difference = at.open - truth.openness(at.point, at.normal);
-        sum += difference * difference;
+/// Openness of a scene as the bake finds it, against 8192 rays at the same points.
+class Comparison {
+  public:
+    Comparison(const Scene& scene, int quality)
+        : scene_(scene),
+          tracer_(make_tracer(scene)),
+          bake_(scene, *tracer_, quality),
+          truth_(*tracer_, 8192) {}
+
+    /// Root of the mean square of the difference, at one of so many pixels.
+    double error(int side, unsigned one_of, View view = View::front) const {
+        std::vector<Seen> seen = look_at(scene_, *tracer_, bake_, side, one_of, view);
+        std::erase_if(seen, [this](const Seen& at) { return starts_within_a_ball(scene_, at); });
+        EXPECT_GT(seen.size(), 200U);
+        double sum = 0.0;
+        for (const Seen& at : seen) {
+            const double difference = at.open - truth_.openness(at.point, at.normal);
+            sum += difference * difference;
+        }
+        return std::sqrt(sum / static_cast<double>(seen.size()));
     }
-    EXPECT_GT(seen.size(), 200U);
-    return std::sqrt(sum / static_cast<double>(seen.size()));
-}
+
+  private:
+    const Scene& scene_;
+    std::unique_ptr<Tracer> tracer_;
+    AmbientBake bake_;
+    RaySky truth_;
+};
 
 TEST(AmbientOcclusion, OfAMoleculeIsWithinOneHundredthOfThatByRays) {
     const std::filesystem::path file = source_dir() / "samples" / "acetaminophen.xyz";
     const Scene scene(read_file(file).objects);
-    EXPECT_LT(error(scene, 512, 150, 3), 0.01);
-    EXPECT_LT(error(scene, 128, 15, 3), 0.01);
+    const Comparison comparison(scene, 3);
+    EXPECT_LT(comparison.error(512, 150), 0.01);
+    EXPECT_LT(comparison.error(128, 15), 0.01);
 }
 
 TEST(AmbientOcclusion, OfAProteinIsWithinOneHundredthOfThatByRays) {
     const std::filesystem::path file = data_dir() / "molecules" / "4hhb.pdb";
     if (!std::filesystem::exists(file)) GTEST_SKIP() << "no " << file;
     const Scene scene(read_file(file).objects);
-    EXPECT_LT(error(scene, 1024, 300, 3), 0.01);
-    EXPECT_LT(error(scene, 1024, 600, 4), 0.008);
+    EXPECT_LT(Comparison(scene, 3).error(1024, 900), 0.01);
+    EXPECT_LT(Comparison(scene, 4).error(1024, 1200), 0.008);
 }
 
 TEST(AmbientOcclusion, OfARibosomeIsWithinOneHundredthOfThatByRays) {
     const std::filesystem::path file = data_dir() / "molecules" / "1ffk_ribosome50S.cif.gz";
     if (!std::filesystem::exists(file)) GTEST_SKIP() << "no " << file;
     const Scene scene(read_file(file).objects);
-    EXPECT_LT(error(scene, 1024, 150, 3), 0.0096);
-    for (const View view : {View::iso, View::top, View::left}) {
-        EXPECT_LT(error(scene, 1024, 400, 3, view), 0.0095);
+    const Comparison comparison(scene, 3);
+    for (const View view : {View::front, View::iso, View::top, View::left}) {
+        EXPECT_LT(comparison.error(1024, 1500, view), 0.01);
     }
-    EXPECT_LT(error(scene, 1024, 300, 5), 0.006);
+    EXPECT_LT(Comparison(scene, 5).error(1024, 1600), 0.0065);
 }
 
 /// Strings of balls stand for the sticks.
@@ -133,8 +148,8 @@ TEST(AmbientOcclusion, OfSticksIsNearThatByRays) {
         options.data.representation = how;
         const Scene scene(read_file(file, options).objects);
         ASSERT_EQ(scene.objects().size(), 2U);
-        EXPECT_LT(error(scene, 512, 100, 3), 0.015);
-        EXPECT_LT(error(scene, 256, 30, 5), 0.015);
+        EXPECT_LT(Comparison(scene, 3).error(256, 25), 0.006);
+        EXPECT_LT(Comparison(scene, 5).error(160, 11), 0.006);
     }
 }
 
@@ -145,8 +160,8 @@ TEST(AmbientOcclusion, GetsBetterWithQuality) {
         balls.push_back({uniform_point(random), 0.02F + 0.08F * uniform(random)});
     }
     const Scene scene({sphere_object(std::move(balls))});
-    const double low = error(scene, 256, 40, 1);
-    const double high = error(scene, 256, 40, 5);
+    const double low = Comparison(scene, 1).error(192, 22);
+    const double high = Comparison(scene, 5).error(192, 22);
     EXPECT_LT(high, 0.6 * low);
     EXPECT_LT(high, 0.02);
 }
