@@ -334,6 +334,25 @@ TEST(DenseLines, LeaveABundleOfThreeTheirWidth) {
 
 // Invariances
 
+TEST(Picture, OfSticksDoesNotDependOnTiles) {
+    for (unsigned seed = 0; seed < 12; ++seed) {
+        const Scene scene(chain_of_sticks(seed, 400, 1.0F));
+        const auto tracer = make_tracer(scene);
+        Settings settings;
+        settings.size = {160, 120};
+        settings.view.view = seed % 2 == 0 ? View::front : View::top;
+        settings.threads = 1;
+        settings.tile = 512;
+        const Film reference = render(scene, *tracer, settings, {true, true});
+        for (const int tile : {4, 20, 36}) {
+            settings.tile = tile;
+            const Film film = render(scene, *tracer, settings, {true, true});
+            EXPECT_TRUE(film.display().pixels == reference.display().pixels)
+                << "seed " << seed << ", tiles of " << tile;
+        }
+    }
+}
+
 TEST(Picture, OfLocatedLinesDoesNotDependOnThreadsOrTiles) {
     const Scene scene(random_objects(5, 60, 40));
     const auto tracer = make_tracer(scene);

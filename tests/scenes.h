@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <numbers>
@@ -102,6 +103,32 @@ inline Object copied_sticks(unsigned seed, int count) {
     object.kind = ObjectKind::shape;
     object.shape = std::move(sticks);
     return object;
+}
+
+/// Sticks without caps in a chain that winds about, from ball to ball; balls of the sticks' radius,
+/// as `--represent sticks` draws them, or larger ones.
+inline std::vector<Object> chain_of_sticks(unsigned seed, int count, float ball) {
+    constexpr double kRadius = 0.02;
+    std::mt19937 random(seed);
+    std::vector<Sphere> balls;
+    Glyphs sticks;
+    sticks.shape = {.kind = GlyphKind::frustum, .capped = false};
+    Vec3f at{0.5F, 0.5F, 0.5F};
+    for (int i = 0; i < count; ++i) {
+        balls.push_back({at, ball * static_cast<float>(kRadius)});
+        Vec3f next = at + (uniform_point(random) - Vec3f{0.5F, 0.5F, 0.5F}) * 0.3F;
+        next = {std::clamp(next.x, 0.0F, 1.0F), std::clamp(next.y, 0.0F, 1.0F),
+                std::clamp(next.z, 0.0F, 1.0F)};
+        const Vec3d middle = to_double(at + next) * 0.5;
+        sticks.placements.push_back(placement_between(to_double(at), middle, kRadius));
+        sticks.placements.push_back(placement_between(middle, to_double(next), kRadius));
+        at = next;
+    }
+    Object object;
+    object.name = "sticks";
+    object.kind = ObjectKind::shape;
+    object.shape = std::move(sticks);
+    return {sphere_object(std::move(balls)), std::move(object)};
 }
 
 /// The objects moved and scaled in the world: p -> p * scale + shift.

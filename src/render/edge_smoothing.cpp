@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <limits>
 
 #include <hwy/highway.h>
 
@@ -21,6 +22,9 @@ constexpr hn::FixedTag<std::int32_t, 4> kFourIntegers;
 Four set(float value) { return hn::Set(kFour, value); }
 
 int floor_divide(int a, int b) { return (a >= 0 ? a : a - b + 1) / b; }
+
+/// Of a pixel on the fringe that no line may change.
+constexpr ColorShift kLeft{std::numeric_limits<std::int32_t>::min(), 0, 0, 0};
 
 bool is_zero(const ColorShift& shift) { return (shift[0] | shift[1] | shift[2] | shift[3]) == 0; }
 
@@ -94,6 +98,17 @@ void EdgeSmoothing::spread_beyond(int k) {
     }
 }
 
+void EdgeSmoothing::leave(int i, int j) {
+    const int column = floor_divide(i, q_) - tile_.x0;
+    const int row = floor_divide(j, q_) - tile_.y0;
+    if (column < 0 || row < 0 || column >= tile_.x1 - tile_.x0 || row >= tile_.y1 - tile_.y0)
+        return;
+    touch(column, row);
+    any_ = true;
+    // Other tiles may add to the fringe.
+    shifts_[pixel(column, row)] = column == 0 || row == 0 ? kLeft : ColorShift{};
+}
+
 void EdgeSmoothing::apply(int x, int y, ColorPacket& colors) const {
     const ColorShift* const shifts = shifts_.data() + pixel(x - tile_.x0, y - tile_.y0);
     const auto inside =
@@ -165,7 +180,10 @@ void finish_fringe(std::span<const Tile> tiles, const std::vector<const Fringe*>
         ColorShift sum{};
         const auto column = static_cast<std::size_t>(x - tile.x0);
         const auto row = static_cast<std::size_t>(y - tile.y0);
-        if (!fringe.own.empty()) add_to(sum, fringe.own[k]);
+        if (!fringe.own.empty()) {
+            if (fringe.own[k] == kLeft) return;
+            add_to(sum, fringe.own[k]);
+        }
         if (column == 0 && left != nullptr && !left->right.empty()) add_to(sum, left->right[row]);
         if (row == 0 && above != nullptr && !above->below.empty()) {
             add_to(sum, above->below[column]);

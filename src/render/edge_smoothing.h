@@ -19,7 +19,7 @@ namespace ink {
 /// first row, then in the first column below it.
 struct Fringe {
     std::vector<PixelColor> colors;  ///< empty: all background
-    std::vector<ColorShift> own;     ///< from the tile's own lines; empty: none
+    std::vector<ColorShift> own;     ///< from the tile's own lines, or kLeft; empty: none
     std::vector<ColorShift> right;   ///< for the column after the last; empty: none
     std::vector<ColorShift> below;   ///< for the row after the last and its corner on the right
 };
@@ -54,6 +54,10 @@ class EdgeSmoothing {
     }
     /// Segments wait for others; after the last one has been added, this takes in what is left.
     void finish();
+
+    /// Leaves the pixel of lattice point (i, j) as it is, if it lies in the tile, whatever lines
+    /// add to it. To be called after all segments have been added.
+    void leave(int i, int j);
 
     /// Adds what there is to the block with pixel (x, y), which lies in the tile; its pixels on the
     /// tile's fringe are left as they are.

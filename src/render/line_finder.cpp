@@ -72,6 +72,9 @@ TileLines LineFinder::search(const Tile& tile) {
     if (ridges_ != nullptr) keep_for_ridges(tile);
     find_lines();
     if (specular_) add_specular();
+    // Smoothing goes by what points see: whether one on the next tile's border looks into a slit,
+    // that tile alone may know.
+    if (front_ && (edges_.find_lines || edges_.smooth_shading)) close_slits();
     if (front_) put_pixels(tile);
     found_.strokes = strokes_;  // no larger than they are
     return std::move(found_);
@@ -336,7 +339,6 @@ void LineFinder::find_lines() {
     {
         const Timer phase(stats_.locate_ms);
         locate();
-        if (front_) close_slits();
         if (crosses_faces()) cross_faces();
     }
     {
@@ -459,22 +461,30 @@ void LineFinder::locate() {
 
 /// What a lattice point sees through a slit too narrow for a line would be a speck in the picture:
 /// it takes the colour of what is beside it. Only by edges that begin in it, which belong to its
-/// own tile.
+/// own tile, and from what its neighbour sees itself: all that, no tile but its own need know.
 void LineFinder::close_slits() {
+    closed_.clear();
     for (const auto slits : {mesh_locator_.slits(), locator_.slits()}) {
         for (const std::uint32_t k : slits) {
             const SuspectEdge& edge = suspects_[k];
-            const auto [r, g, b, a] =
-                color_at(edge.i + (edge.down ? 0 : 1), edge.j + (edge.down ? 1 : 0));
-            const auto [block, lane] = place_of(edge.i, edge.j);
-            if (block == kEmptyBlock) continue;
-            ColorPacket& colors = colors_[block];
-            colors.r[lane] = r;
-            colors.g[lane] = g;
-            colors.b[lane] = b;
-            colors.a[lane] = a;
-            seen_[block] = 1;
+            const BlockPlace place = place_of(edge.i, edge.j);
+            if (place.block == kEmptyBlock) continue;
+            const int i = edge.i + (edge.down ? 0 : 1);
+            const int j = edge.j + (edge.down ? 1 : 0);
+            closed_.push_back({place, edge.down, color_at(i, j)});
+            // What lines change is reckoned from what the point saw.
+            if (smooths_) smoothing_.leave(grid_.x0 + edge.i, grid_.y0 + edge.j);
         }
+    }
+    // Where slits run on both sides, the one on the right counts.
+    std::ranges::stable_partition(closed_, &ClosedPoint::down);
+    for (const auto& [place, down, color] : closed_) {
+        ColorPacket& colors = colors_[place.block];
+        colors.r[place.lane] = color[0];
+        colors.g[place.lane] = color[1];
+        colors.b[place.lane] = color[2];
+        colors.a[place.lane] = color[3];
+        seen_[place.block] = 1;
     }
 }
 

@@ -176,6 +176,12 @@ class LineFinder {
         std::uint32_t block;  ///< or kEmptyBlock
         int lane;
     };
+    /// A lattice point that looks into a slit, and the colour that it takes.
+    struct ClosedPoint {
+        BlockPlace place;
+        bool down;  ///< the slit's far side is the point below
+        PixelColor color;
+    };
     BlockPlace place_of(int i, int j) const {
         if (i < columns_in_blocks_ && j < rows_in_blocks_) {
             return {block_index(i / kBlockSide, j / kBlockSide),
@@ -226,6 +232,7 @@ class LineFinder {
     std::vector<NormalPacket> normals_;
     std::vector<ColorPacket> colors_;
     std::vector<std::uint8_t> seen_;
+    std::vector<ClosedPoint> closed_;
     std::vector<HitPacket> point_hits_;
     std::vector<SuspectEdge> suspects_;
     std::vector<MeshEdge> mesh_edges_;
