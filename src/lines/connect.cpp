@@ -104,10 +104,11 @@ INKTRACE_INLINE void Connector::add_segment(const Port& from, const Port& to,
 }
 
 void Connector::connect(const SampleGrid& grid, std::span<const SuspectEdge> edges,
-                        std::span<const Crossing> crossings, std::vector<Segment>& segments) {
+                        std::span<const Crossing> crossings, std::vector<Segment>& segments,
+                        std::span<const std::uint8_t> face_cells) {
     segments.clear();
     if (crossings.empty()) return;
-    count_members(grid, edges, crossings);
+    count_members(grid, edges, crossings, face_cells);
     segments.reserve(crossings.size());
     // Most cells have none, or one, which there is nothing to join with: eight at a time.
     constexpr std::uint64_t kTwoOrMore = 0x0202020202020202U;
@@ -125,7 +126,8 @@ void Connector::connect(const SampleGrid& grid, std::span<const SuspectEdge> edg
 }
 
 void Connector::count_members(const SampleGrid& grid, std::span<const SuspectEdge> edges,
-                              std::span<const Crossing> crossings) {
+                              std::span<const Crossing> crossings,
+                              std::span<const std::uint8_t> face_cells) {
     const int across = grid.width - 1;
     const int down = grid.height - 1;
     stride_ = static_cast<std::size_t>(across + 7) / 8 * 8;
@@ -135,6 +137,10 @@ void Connector::count_members(const SampleGrid& grid, std::span<const SuspectEdg
     more_.clear();
     const auto add = [&](int i, int j, int side, std::size_t crossing) {
         if (i < 0 || j < 0 || i >= across || j >= down) return;
+        if (!face_cells.empty() && crossings[crossing].type == LineType::mesh &&
+            face_cells[grid.index(i, j)] == 0) {
+            return;
+        }
         const std::size_t cell =
             static_cast<std::size_t>(j) * stride_ + static_cast<std::size_t>(i);
         const Member member = static_cast<Member>(side) << 30U | static_cast<Member>(crossing);

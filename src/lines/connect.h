@@ -22,8 +22,12 @@ inline constexpr GeometryId kNobody = 0xFFFFFFFFU;
 /// ends on the one in front, and lines that meet as equals end at a junction in the middle.
 class Connector {
   public:
+    /// `face_cells`, by upper left point: in which cells lines between faces are joined; empty: in
+    /// all. Others that touch such a cell have crossings of these lines on some of their sides
+    /// only.
     void connect(const SampleGrid& grid, std::span<const SuspectEdge> edges,
-                 std::span<const Crossing> crossings, std::vector<Segment>& segments);
+                 std::span<const Crossing> crossings, std::vector<Segment>& segments,
+                 std::span<const std::uint8_t> face_cells = {});
 
   private:
     /// A crossing on the way round a cell, clockwise from its upper left corner.
@@ -36,7 +40,8 @@ class Connector {
     };
 
     void count_members(const SampleGrid& grid, std::span<const SuspectEdge> edges,
-                       std::span<const Crossing> crossings);
+                       std::span<const Crossing> crossings,
+                       std::span<const std::uint8_t> face_cells);
     void connect_cell(const SampleGrid& grid, std::span<const Crossing> crossings, int i, int j,
                       std::vector<Segment>& segments);
     using Corners = std::array<std::uint32_t, 4>;

@@ -343,7 +343,7 @@ void LineFinder::find_lines() {
     }
     {
         const Timer phase(stats_.connect_ms);
-        connector_.connect(grid_, suspects_, crossings_, segments_);
+        connector_.connect(grid_, suspects_, crossings_, segments_, face_cells());
         if (front_ && edges_.tones) find_tones();
         if (crosses_faces()) drop_unmarked_faces();
         stats_.crossings += crossings_.size();

@@ -170,6 +170,7 @@ class LineFinder {
     void drop_unmarked_faces();
     void mark(int i, int j);
     void cross_all_faces();
+    std::span<const std::uint8_t> face_cells() const;
     bool marked(int i, int j) const;
     /// Where a point of the grid is.
     struct BlockPlace {

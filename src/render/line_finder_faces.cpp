@@ -106,6 +106,14 @@ void LineFinder::cross_faces() {
         cross_faces(i + 1, j, true);
     }
     if (edges_.pipeline.lines.drawing != nullptr) cross_all_faces();
+    for (std::uint8_t& marks : marks_) marks &= kMarked;
+}
+
+/// The cells in which lines between faces are joined; empty: all, or there are none. A tile knows
+/// which cells beside its own are marked only by crossings that it has itself.
+std::span<const std::uint8_t> LineFinder::face_cells() const {
+    const bool some = crosses_faces() && edges_.pipeline.lines.drawing == nullptr;
+    return some ? std::span<const std::uint8_t>(marks_) : std::span<const std::uint8_t>();
 }
 
 /// Marks a cell of the grid, if it is one.
