@@ -335,22 +335,26 @@ TEST(DenseLines, LeaveABundleOfThreeTheirWidth) {
 
 // Invariances
 
+void expect_same_for_tiles(const Scene& scene, Settings settings) {
+    const auto tracer = make_tracer(scene);
+    settings.threads = 1;
+    settings.tile = 512;
+    const Film reference = render(scene, *tracer, settings, {true, true});
+    for (const int tile : {4, 20, 36}) {
+        settings.tile = tile;
+        const Film film = render(scene, *tracer, settings, {true, true});
+        EXPECT_TRUE(film.display().pixels == reference.display().pixels) << "tiles of " << tile;
+    }
+}
+
 TEST(Picture, OfSticksDoesNotDependOnTiles) {
     for (unsigned seed = 0; seed < 12; ++seed) {
+        SCOPED_TRACE(seed);
         const Scene scene(chain_of_sticks(seed, 400, 1.0F));
-        const auto tracer = make_tracer(scene);
         Settings settings;
         settings.size = {160, 120};
         settings.view.view = seed % 2 == 0 ? View::front : View::top;
-        settings.threads = 1;
-        settings.tile = 512;
-        const Film reference = render(scene, *tracer, settings, {true, true});
-        for (const int tile : {4, 20, 36}) {
-            settings.tile = tile;
-            const Film film = render(scene, *tracer, settings, {true, true});
-            EXPECT_TRUE(film.display().pixels == reference.display().pixels)
-                << "seed " << seed << ", tiles of " << tile;
-        }
+        expect_same_for_tiles(scene, settings);
     }
 }
 
@@ -388,21 +392,13 @@ Scene random_prisms(unsigned seed, int count) {
 /// Where outlines do not cover their ends, lines between faces are joined beside them.
 TEST(Picture, OfLinesBetweenFacesAloneDoesNotDependOnTiles) {
     for (unsigned seed = 0; seed < 8; ++seed) {
+        SCOPED_TRACE(seed);
         const Scene scene = random_prisms(seed, 300);
-        const auto tracer = make_tracer(scene);
         Settings settings;
         settings.size = {160, 120};
         settings.view.view = View::front;
-        settings.threads = 1;
-        settings.tile = 512;
         set(settings, "lines", "mesh");
-        const Film reference = render(scene, *tracer, settings, {true, true});
-        for (const int tile : {4, 20, 36}) {
-            settings.tile = tile;
-            const Film film = render(scene, *tracer, settings, {true, true});
-            EXPECT_TRUE(film.display().pixels == reference.display().pixels)
-                << "seed " << seed << ", tiles of " << tile;
-        }
+        expect_same_for_tiles(scene, settings);
     }
 }
 
