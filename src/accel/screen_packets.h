@@ -99,6 +99,13 @@ struct Basis {
     explicit Basis(const Projection& projection);
 };
 
+/// The primitives of a packet whose object, kind and shape are set: bounds, forms and what hits
+/// need.
+void prepare(const Basis& basis, const SphereLanes& spheres, ScreenPacket& packet);
+void prepare(const Basis& basis, const TriangleLanes& triangles, ScreenPacket& packet);
+void prepare(const Basis& basis, const SolidLanes& faces, ScreenPacket& packet);
+void prepare(const Basis& basis, const GlyphLanes& glyphs, ScreenPacket& packet);
+
 /// What the camera sees of a cluster.
 void prepare(const Basis& basis, const Clusters& clusters, const Cluster& cluster,
              ScreenPacket& packet);
