@@ -20,6 +20,7 @@ TEST(Pace, TakesFewerRaysWhereLinesCostMuchOfAFrame) {
     pace.plain_took(25.0);
     pace.frame_took(1.0, 29.0);
     EXPECT_EQ(pace.scale(), 1.0);
+    pace.forget();
     pace.frame_took(1.0, 120.0);
     EXPECT_LE(pace.scale(), 0.5);
 }
@@ -41,13 +42,63 @@ TEST(Pace, TakesNoFewerRaysWhereThatIsNoFaster) {
 TEST(Pace, StaysWithAScaleWhileFramesCostTheSame) {
     for (const double full_ms : {20.0, 50.0, 90.0, 300.0}) {
         Pace pace;
-        for (int k = 0; k < 5; ++k) pace.frame_took(pace.scale(), full_ms * pace.scale());
+        for (int k = 0; k < 15; ++k) pace.frame_took(pace.scale(), full_ms * pace.scale());
         const double settled = pace.scale();
         for (int k = 0; k < 20; ++k) {
             pace.frame_took(pace.scale(), full_ms * pace.scale());
             EXPECT_EQ(pace.scale(), settled) << full_ms;
         }
     }
+}
+
+/// What one frame in three takes longer because of other programs.
+double disturbance(int frame) {
+    return frame % 3 == 1 ? 0.5 + std::fmod(frame * 0.618033988749895, 1.0) : 0.0;
+}
+
+TEST(Pace, StaysWithAScaleWhileOtherProgramsDisturbIt) {
+    for (const double full_ms : {15.0, 20.0, 35.0, 60.0}) {
+        for (const double power : {0.4, 1.0, 1.6}) {
+            Pace pace;
+            pace.plain_took(15.0);
+            int changes = 0;  // once it has settled
+            double scale = pace.scale();
+            for (int k = 0; k < 300; ++k) {
+                const double ms = full_ms * std::pow(scale, power) * (1.0 + disturbance(k));
+                pace.frame_took(scale, ms);
+                if (pace.scale() != scale) ++changes;
+                scale = pace.scale();
+                if (k == 40) changes = 0;
+            }
+            EXPECT_EQ(changes, 0) << full_ms << ", " << power;
+            const double settled_ms = full_ms * std::pow(scale, power);
+            const double least_ms = full_ms * std::pow(0.25, power);
+            EXPECT_LE(settled_ms, std::max(1.2 * 15.0, 1.1 * least_ms)) << full_ms << ", " << power;
+        }
+    }
+}
+
+TEST(Pace, TakesMoreRaysAgainWhenFramesBecomeCheap) {
+    Pace pace;
+    pace.plain_took(15.0);
+    for (int k = 0; k < 10; ++k) pace.frame_took(pace.scale(), 60.0 * pace.scale());
+    EXPECT_LT(pace.scale(), 0.5);
+    for (int k = 0; k < 20; ++k) pace.frame_took(pace.scale(), 15.0 * pace.scale());
+    EXPECT_EQ(pace.scale(), 1.0);
+}
+
+TEST(Pace, TakesAsManyRaysAsItIsTold) {
+    Pace pace;
+    pace.plain_took(10.0);
+    pace.keep_above(0.375);
+    for (int k = 0; k < 20; ++k) {
+        pace.frame_took(pace.scale(), 100.0 * pace.scale());
+        EXPECT_GE(pace.scale(), 0.375);
+    }
+    EXPECT_EQ(pace.scale(), 0.375);
+    pace.keep_above(0.0);
+    for (int k = 0; k < 20; ++k) pace.frame_took(pace.scale(), 100.0 * pace.scale());
+    EXPECT_EQ(pace.scale(), 0.25);
 }
 
 TEST(ScaledSettings, KeepTheShareOfInk) {

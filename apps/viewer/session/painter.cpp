@@ -112,7 +112,8 @@ void Painter::finish(Painting painting) {
 }
 
 void Painter::quick(const PaintRequest& request) {
-    const double scale = std::max(pace_.scale(), request.least_scale);
+    pace_.keep_above(request.least_scale);
+    const double scale = pace_.scale();
     const Settings settings = quick_settings(request.settings);
     const auto start = Clock::now();
     RenderOptions options;
@@ -170,12 +171,12 @@ void Painter::in_full(const PaintRequest& request) {
             .latency_ms = ms_since(request.asked)});
 }
 
-/// What a frame without lines takes, once a scene and size: with lines it may take little longer.
+/// What a frame without lines takes, seen like that: with lines it may take little longer.
 void Painter::learn_plain(const PaintRequest& request) {
-    const std::string size = request.settings.get("size");
-    if (plain_of_.lock() == request.renderer && plain_size_ == size) return;
     Settings plain = quick_settings(request.settings);
     plain.set("lines", "none").set("hidden", "none").set("aa", "");
+    const bool same_scene = plain_of_.lock() == request.renderer;
+    if (same_scene && plain_settings_ == plain.changed()) return;
     RenderOptions options;
     options.cancel = &cancel_;
     double best = 1e9;
@@ -186,9 +187,11 @@ void Painter::learn_plain(const PaintRequest& request) {
         constexpr double kSlow = 50.0;  // no need to know better
         if (best > kSlow) break;
     }
+    if (!same_scene || plain_size_ != plain.get("size")) pace_.forget();
     pace_.plain_took(best);
     plain_of_ = request.renderer;
-    plain_size_ = size;
+    plain_size_ = plain.get("size");
+    plain_settings_ = plain.changed();
 }
 
 void Painter::run() {

@@ -10,6 +10,8 @@
 #include <optional>
 #include <string>
 #include <thread>
+#include <utility>
+#include <vector>
 
 #include "inktrace/inktrace.h"
 #include "session/pace.h"
@@ -83,11 +85,12 @@ class Painter {
     std::atomic<std::uint64_t> cancelled_ = 0;
     Pace pace_;
     std::weak_ptr<const Renderer> plain_of_;  ///< whose frames without lines the pace knows,
-    std::string plain_size_;                  ///< and of which size
-    double ms_per_megapixel_ = 0.0;           ///< of pictures in full, as far as known,
-    std::weak_ptr<const Renderer> cost_of_;   ///< of this renderer
-    std::string cost_key_;                    ///< and for these settings
-    bool shown_exactly_ = false;              ///< the quick picture was the picture in full
+    std::string plain_size_;                  ///< of which size,
+    std::vector<std::pair<std::string, std::string>> plain_settings_;  ///< and drawn with which
+    double ms_per_megapixel_ = 0.0;          ///< of pictures in full, as far as known,
+    std::weak_ptr<const Renderer> cost_of_;  ///< of this renderer
+    std::string cost_key_;                   ///< and for these settings
+    bool shown_exactly_ = false;             ///< the quick picture was the picture in full
     std::thread thread_;
 };
 
