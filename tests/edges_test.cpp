@@ -358,6 +358,21 @@ TEST(Picture, OfSticksDoesNotDependOnTiles) {
     }
 }
 
+/// Tones are as soft as light changes between neighbours, which may lie beyond a tile's end.
+TEST(Picture, InTonesDoesNotDependOnTiles) {
+    for (unsigned seed = 0; seed < 2; ++seed) {
+        SCOPED_TRACE(seed);
+        std::vector<Object> objects = random_objects(seed, 60, 40);
+        if (seed % 2 == 1) objects[0].material.mirror = 0.5F;
+        const Scene scene(std::move(objects));
+        Settings settings;
+        settings.size = {159, 121};
+        settings.view.view = View::front;
+        set(settings, "look", "toon");
+        expect_same_for_tiles(scene, settings);
+    }
+}
+
 /// Small prisms of nine sides as meshes, turned and placed at random, so that they hide each
 /// other: lines between faces, creases and outlines run through cells beside each other.
 Scene random_prisms(unsigned seed, int count) {

@@ -123,7 +123,10 @@ void LineFinder::trace_lattice(const Tile& tile) {
 }
 
 /// Whether points of one more column and row than blocks have are traced in strips.
-bool LineFinder::lays_strips() const { return sampler_.rays_travel_alone() && !specular_; }
+bool LineFinder::lays_strips() const {
+    return sampler_.rays_travel_alone() && !specular_ &&
+           !edges_.pipeline.shader.compares_neighbours();
+}
 
 void LineFinder::lay_blocks() {
     const auto in_blocks = [&](int points) {
@@ -134,6 +137,8 @@ void LineFinder::lay_blocks() {
     blocks_across_ = (columns_in_blocks_ + kBlockSide - 1) / kBlockSide;
     block_at_.clear();
     blocks_.clear();
+    // Of points that are shaded with an eye to their neighbours, all tiles must see the same ones.
+    const bool whole = edges_.pipeline.shader.compares_neighbours();
     for (int j = 0; j < rows_in_blocks_; j += kBlockSide) {
         // Most rows without anything are told by one question.
         const ScreenBox first = screen_box({grid_.x0, grid_.y0 + j}, grid_.spacing);
@@ -147,7 +152,7 @@ void LineFinder::lay_blocks() {
         for (int i = 0; i < columns_in_blocks_; i += kBlockSide) {
             block_at_.push_back(
                 lay_block({grid_.x0 + i, grid_.y0 + j, std::min(kBlockSide, columns_in_blocks_ - i),
-                           std::min(kBlockSide, rows_in_blocks_ - j)}));
+                           std::min(kBlockSide, rows_in_blocks_ - j), kBlockSide, whole}));
         }
     }
     strips_down_.clear();

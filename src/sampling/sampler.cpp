@@ -21,7 +21,8 @@ void place_blocks(float spacing, std::span<const Block> blocks, Vec2f offset, Po
             const int row = i >> shift;
             packet.x[i] = (static_cast<float>(block.x + column) + 0.5F) * spacing + offset.x;
             packet.y[i] = (static_cast<float>(block.y + row) + 0.5F) * spacing + offset.y;
-            packet.active[i] = -static_cast<int>(column < block.columns && row < block.rows);
+            packet.active[i] =
+                -static_cast<int>(block.whole || (column < block.columns && row < block.rows));
         }
     }
 }
@@ -66,8 +67,9 @@ ScreenBox bounds(std::span<const Block> blocks, float spacing) {
     ScreenBox box = kEmptyBox;
     for (const Block& block : blocks) {
         extend(box, {static_cast<float>(block.x), static_cast<float>(block.y)});
-        extend(box, {static_cast<float>(block.x + block.columns),
-                     static_cast<float>(block.y + block.rows)});
+        const int columns = block.whole ? kBlockSide : block.columns;
+        const int rows = block.whole ? kBlockSide : block.rows;
+        extend(box, {static_cast<float>(block.x + columns), static_cast<float>(block.y + rows)});
     }
     return {box.left * spacing, box.top * spacing, box.right * spacing, box.bottom * spacing};
 }
@@ -110,7 +112,9 @@ void Sampler::find_blocks(std::span<const Block> blocks, Vec2f offset) {
     const ScreenBox box = shifted(bounds(blocks, spacing_), offset);
     if (!entered(box)) enter(box);
     for (const Block& block : blocks) {
-        rays_ += static_cast<std::size_t>(block.columns) * static_cast<std::size_t>(block.rows);
+        rays_ += block.whole ? std::size_t{kLanes}
+                             : static_cast<std::size_t>(block.columns) *
+                                   static_cast<std::size_t>(block.rows);
     }
     make_room();
     // A few blocks find their own way faster.

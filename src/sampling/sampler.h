@@ -16,8 +16,9 @@ namespace ink {
 /// also be a strip: sixteen points of a row or of a column.
 struct Block {
     int x = 0, y = 0;
-    int columns = kBlockSide, rows = kBlockSide;  ///< of it that are wanted; the rest is not traced
+    int columns = kBlockSide, rows = kBlockSide;  ///< of it that are wanted
     int across = kBlockSide;                      ///< lanes a row: 4, or 16 or 1 of a strip
+    bool whole = false;                           ///< what is not wanted is traced all the same
 
     int column(int lane) const { return lane % across; }
     int row(int lane) const { return lane / across; }

@@ -77,6 +77,9 @@ class Shader {
     /// Whether `line_normals` differ from what `smooth` gives for any object.
     bool has_line_normals() const { return any_line_normals_; }
 
+    /// Whether a lane's colour depends on what the lanes beside it saw.
+    bool compares_neighbours() const { return mode_ == ShadeMode::toon; }
+
     /// Asks the cache for what shading these hits will read, to be called a few packets ahead.
     void prefetch(const HitPacket& hits) const;
 
