@@ -134,12 +134,16 @@ void draw_performance(Interface& interface) {
 }
 
 void draw_welcome(Interface& interface, float width, float height) {
-    const char* text = "Drop a molecule, particles or a mesh here, or press Ctrl+O";
-    if (interface.session.has_scene()) text = "Drawing...";
-    if (interface.session.loading()) text = "Loading...";
-    const ImVec2 size = ImGui::CalcTextSize(text);
-    ImGui::GetBackgroundDrawList()->AddText({0.5F * (width - size.x), 0.5F * (height - size.y)},
-                                            IM_COL32(90, 90, 90, 255), text);
+    const auto write = [&](const char* text, float lines_down) {
+        const ImVec2 size = ImGui::CalcTextSize(text);
+        const float y = 0.5F * (height - size.y) + lines_down * ImGui::GetTextLineHeight();
+        ImGui::GetBackgroundDrawList()->AddText({0.5F * (width - size.x), y},
+                                                IM_COL32(90, 90, 90, 255), text);
+    };
+    if (interface.session.loading()) return write("Loading...", 0.0F);
+    if (interface.session.has_scene()) return write("Drawing...", 0.0F);
+    write("Drop a molecule, particles or a mesh here, or press Ctrl+O", -1.0F);
+    write("? shows what mouse and keyboard do", 1.0F);
 }
 
 }  // namespace inktrace::viewer

@@ -5,6 +5,9 @@
 
 #include <algorithm>
 #include <set>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "base/text.h"
 #include "session/line_rules.h"
@@ -63,25 +66,49 @@ void describe_files(Interface& interface) {
     if (interface.session.infos().empty()) ImGui::TextDisabled("No file");
 }
 
-void describe_picked(Interface& interface) {
-    if (!interface.picked) return;
-    if (!ImGui::CollapsingHeader("Picked", ImGuiTreeNodeFlags_DefaultOpen)) return;
-    const Hit& hit = *interface.picked;
-    const auto row = [&](const std::string& name, const std::string& value) {
+using Facts = std::vector<std::pair<std::string, std::string>>;
+
+Facts facts_of(const Hit& hit) {
+    Facts facts{{hit.kind, fmt::format("{} of {}", hit.primitive + 1, hit.object)}};
+    facts.insert(facts.end(), hit.facts.begin(), hit.facts.end());
+    facts.emplace_back("position", fmt::format("{:.5g}, {:.5g}, {:.5g}", hit.position[0],
+                                               hit.position[1], hit.position[2]));
+    return facts;
+}
+
+/// Of the facts about what is picked, with their title and buttons; no more than a share of the
+/// panel, where they scroll.
+float height_of(const Interface& interface, const Facts& facts, float panel) {
+    constexpr float kMost = 0.45F;
+    const float spacing = ImGui::GetStyle().ItemSpacing.y;
+    const float wrap = ImGui::GetContentRegionAvail().x - interface.px(kValuePoints);
+    float height = 3 * spacing + ImGui::GetTextLineHeightWithSpacing() + ImGui::GetFrameHeight();
+    for (const auto& [name, value] : facts) {
+        height += ImGui::CalcTextSize(value.c_str(), nullptr, false, wrap).y + spacing;
+    }
+    return std::min(height, kMost * panel);
+}
+
+/// At the foot of the panel, so that a click moves nothing above it.
+void describe_picked(Interface& interface, const Facts& facts, float height) {
+    ImGui::BeginChild("##picked", {0, height}, false);
+    ImGui::Separator();
+    ImGui::TextUnformatted("Picked");
+    const float rest = ImGui::GetContentRegionAvail().y - ImGui::GetFrameHeightWithSpacing();
+    ImGui::BeginChild("##facts", {0, rest}, false);
+    for (const auto& [name, value] : facts) {
         ImGui::TextDisabled("%s", name.c_str());
         ImGui::SameLine(interface.px(kValuePoints));
         ImGui::TextWrapped("%s", value.c_str());
-    };
-    row(hit.kind, fmt::format("{} of {}", hit.primitive + 1, hit.object));
-    for (const auto& [name, value] : hit.facts) row(name, value);
-    row("position",
-        fmt::format("{:.5g}, {:.5g}, {:.5g}", hit.position[0], hit.position[1], hit.position[2]));
+    }
+    ImGui::EndChild();
     if (ImGui::Button("Turn about it")) {
-        const ink::Vec3d center{hit.center[0], hit.center[1], hit.center[2]};
-        interface.session.move_camera(interface.session.camera().focused(center));
+        const auto& c = interface.picked->center;
+        interface.session.move_camera(interface.session.camera().focused({c[0], c[1], c[2]}));
     }
     ImGui::SameLine();
     if (ImGui::Button("Forget")) interface.picked.reset();
+    ImGui::EndChild();
 }
 
 /// A type of line: on or off, its width and its colour.
@@ -198,15 +225,23 @@ void draw_panel(Interface& interface, float left, float width, float height) {
     ImGui::Begin("##panel", nullptr,
                  ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize |
                      ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoMove |
-                     ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoNav |
-                     ImGuiWindowFlags_AlwaysVerticalScrollbar);  // widths stay as sections open
+                     ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse |
+                     ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoNav);
     buttons(interface);
     ImGui::Spacing();
     describe_files(interface);
     ImGui::Spacing();
-    describe_picked(interface);
+    const Facts facts = interface.picked ? facts_of(*interface.picked) : Facts();
+    const float foot = interface.picked ? height_of(interface, facts, height) : 0.0F;
+    const float gap = interface.picked ? ImGui::GetStyle().ItemSpacing.y : 0.0F;
+    const float sections = ImGui::GetContentRegionAvail().y - foot - gap;
+    ImGui::BeginChild("##sections", {0, sections}, false,
+                      ImGuiWindowFlags_AlwaysVerticalScrollbar |  // widths stay as sections open
+                          ImGuiWindowFlags_NoNav);
     static const std::vector<std::string> kTopics = topics();
     for (const std::string& name : kTopics) topic(interface, name);
+    ImGui::EndChild();
+    if (interface.picked) describe_picked(interface, facts, foot);
     ImGui::End();
 }
 
