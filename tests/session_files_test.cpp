@@ -1,6 +1,9 @@
 // Files of the viewer: read again, played, and what lies under the pointer.
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <utility>
 
 #include "session_owner.h"
 
@@ -90,6 +93,44 @@ TEST(Session, PlaysAndStepsThroughFrames) {
     session.play(true);
     ASSERT_TRUE(owner.wait_for([&] { return session.frame() == 1; }));
     session.play(false);
+}
+
+TEST(Session, PlaysWithTheRadiusAndRangeOfColoursThatAnAnimationIsDrawnWith) {
+    // Neighbours at distance 1, then 2, then 1; the greatest value comes last.
+    std::string text;
+    for (const auto& [gap, value] : {std::pair{1, 5}, {2, 20}, {1, 50}}) {
+        text += fmt::format(
+            "ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n2\nITEM: BOX BOUNDS pp pp pp\n0 9\n0 9\n"
+            "0 9\nITEM: ATOMS id x y z heat cold\n1 0 0 0 0 0\n2 {} 0 0 {} {}\n",
+            gap, value, -value);
+    }
+    const TemporaryFolder folder;
+    Owner owner;
+    Session& session = owner.session;
+    session.open({folder.write("run.lammpstrj", text)}, {{"color-by", "heat"}});
+    session.resize({120, 90});
+    ASSERT_TRUE(owner.wait_for_picture());
+    EXPECT_EQ(session.settings().get("color-range"), "") << "a frame alone has its own";
+    session.frames_per_second = 100;
+    session.play(true);
+    ASSERT_TRUE(owner.wait_for([&] { return session.frame() == 2; }));
+    session.play(false);
+    ASSERT_TRUE(owner.wait_for_picture());
+    EXPECT_EQ(session.settings().get("color-range"), "0:50");
+    EXPECT_EQ(session.settings().get("radius"), "0.5");
+    ASSERT_EQ(run(session.command_line("x.png"), folder.path()), 0);
+    EXPECT_EQ(read_png(folder.path() / "x.png"), bytes(*session.painting().picture));
+
+    session.set("color-by", "cold");
+    EXPECT_EQ(session.settings().get("color-range"), "") << "that was another field's";
+    session.play(true);
+    ASSERT_TRUE(owner.wait_for([&] { return session.settings().get("color-range") == "-50:0"; }));
+    session.play(false);
+    session.set("color-range", "0:1");
+    session.play(true);
+    const int before = session.frame();
+    ASSERT_TRUE(owner.wait_for([&] { return session.frame() != before; }));
+    EXPECT_EQ(session.settings().get("color-range"), "0:1") << "set by hand";
 }
 
 // ---- Picking ----

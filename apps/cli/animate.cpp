@@ -4,12 +4,14 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <numeric>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "animation.h"
+#include "color_range.h"
 #include "messages.h"
 #include "progress_bar.h"
 
@@ -74,19 +76,12 @@ class Animation {
     /// Gives the field that colours show one range over all frames, where it is not set.
     void keep_colors(FrameRange range) {
         if (settings_.get("color-by").empty() || !settings_.get("color-range").empty()) return;
-        std::optional<std::pair<double, double>> values;
-        for (const std::string& input : arguments_.inputs) {
-            for (int frame = range.first; frame <= range.last; ++frame) {
-                Settings settings = settings_;
-                settings.set("frame", std::to_string(frame));
-                const auto own = inspect(input, settings).color_range;
-                if (!own || !(own->first <= own->second)) continue;
-                if (!values) values = own;
-                values->first = std::min(values->first, own->first);
-                values->second = std::max(values->second, own->second);
-            }
-        }
-        if (!values || !(values->first < values->second)) return;
+        const std::vector<std::filesystem::path> files(arguments_.inputs.begin(),
+                                                       arguments_.inputs.end());
+        std::vector<int> frames(static_cast<std::size_t>(range.last - range.first) + 1);
+        std::iota(frames.begin(), frames.end(), range.first);
+        const auto values = color_range_over(files, frames, settings_, [](double) { return true; });
+        if (!values) return;
         settings_.set("color-range", fmt::format("{}:{}", values->first, values->second));
         stale_ = true;
     }

@@ -1,13 +1,18 @@
 #include "session/loader.h"
 
+#include <fmt/format.h>
+
+#include <chrono>
 #include <exception>
 #include <utility>
+
+#include "color_range.h"
 
 namespace inktrace::viewer {
 
 namespace {
 
-LoadResult load_now(LoadRequest request) {
+LoadResult load_now(const LoadRequest& request) {
     LoadResult result;
     try {
         Scene scene;
@@ -19,11 +24,39 @@ LoadResult load_now(LoadRequest request) {
     } catch (const std::exception& error) {
         result.error = error.what();
     }
-    result.request = std::move(request);
     return result;
 }
 
 }  // namespace
+
+/// As `inktrace render` does for the frames of an animation. False if it was told to stop.
+bool Loader::look_through(LoadRequest& request) {
+    using Clock = std::chrono::steady_clock;
+    Settings& settings = request.settings;
+    Settings first = settings;
+    first.set("frame", std::to_string(request.series.front()));
+    if (settings.get("radius").empty() && request.files.size() == 1) {
+        const auto radius = inspect(request.files.front(), first).chosen_radius;
+        if (radius) settings.set("radius", fmt::format("{}", *radius));
+    }
+    if (!settings.get("color-range").empty()) return true;
+    Clock::time_point told{};
+    bool whole = true;
+    const auto go_on = [&](double share) {
+        looked_through_ = share;
+        constexpr auto kStep = std::chrono::milliseconds(200);
+        if (Clock::now() - told > kStep) {
+            told = Clock::now();
+            done_();
+        }
+        const std::scoped_lock lock(mutex_);
+        whole = !stop_ && !ending_ && !waiting_;
+        return whole;
+    };
+    const auto range = color_range_over(request.files, request.series, settings, go_on);
+    if (range) settings.set("color-range", fmt::format("{}:{}", range->first, range->second));
+    return whole;
+}
 
 Loader::Loader(std::function<void()> done) : done_(std::move(done)), thread_([this] { run(); }) {}
 
@@ -40,6 +73,7 @@ void Loader::load(LoadRequest request) {
     {
         const std::scoped_lock lock(mutex_);
         waiting_ = std::move(request);
+        stop_ = false;
     }
     changed_.notify_all();
 }
@@ -62,7 +96,16 @@ void Loader::run() {
         LoadRequest request = *std::exchange(waiting_, std::nullopt);
         running_ = true;
         lock.unlock();
-        LoadResult result = load_now(std::move(request));
+        LoadResult result;
+        try {
+            const bool whole = !request.series.empty() && look_through(request);
+            result = load_now(request);
+            result.looked_through = whole;
+        } catch (const std::exception& error) {
+            result.error = error.what();
+        }
+        looked_through_ = 0.0;
+        result.request = std::move(request);
         lock.lock();
         result_ = std::move(result);
         running_ = false;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <condition_variable>
 #include <cstdint>
 #include <filesystem>
@@ -20,15 +21,19 @@ struct LoadRequest {
     std::vector<std::filesystem::path> files;
     Settings settings;
     std::uint64_t number = 0;  ///< that the result comes back with
+    /// Frames that are to be drawn alike, the first of them first: what each of them would choose
+    /// for itself, radii and the range of colours, is looked up in all and set. None: only one.
+    std::vector<int> series{};
 };
 
 /// What came of it: a renderer, or the reason why there is none.
 struct LoadResult {
-    LoadRequest request;
+    LoadRequest request;  ///< with what was set for a series
     std::shared_ptr<const Renderer> renderer;
     std::vector<FileInfo> infos;
     std::size_t primitives = 0;
     std::string error;
+    bool looked_through = false;  ///< the whole series
 };
 
 /// Loads files on a thread of its own. A new request takes the place of one that waits.
@@ -43,9 +48,14 @@ class Loader {
     void load(LoadRequest request);
     std::optional<LoadResult> take();
     bool busy() const;
+    /// Share of a series that has been looked through; 0 where none is.
+    double looked_through() const { return looked_through_.load(); }
+    /// Loads the frame as it is instead.
+    void stop_looking() { stop_ = true; }
 
   private:
     void run();
+    bool look_through(LoadRequest& request);
 
     std::function<void()> done_;
     mutable std::mutex mutex_;
@@ -54,6 +64,8 @@ class Loader {
     std::optional<LoadResult> result_;
     bool running_ = false;
     bool ending_ = false;
+    std::atomic<bool> stop_ = false;
+    std::atomic<double> looked_through_ = 0.0;
     std::thread thread_;
 };
 

@@ -54,6 +54,7 @@ void Session::open(std::vector<std::filesystem::path> files,
     opened_ = settings_ = settings;
     history_.clear();
     playing_ = false;
+    series_color_by_.reset();
     message_ = {};
     watcher_.watch(files_);
     load(false);
@@ -62,12 +63,15 @@ void Session::open(std::vector<std::filesystem::path> files,
 void Session::reload() {
     if (files_.empty()) return;
     watcher_.watch(files_);  // an archive may have got new folders
+    forget_range(settings_);
+    if (settings_.get("radius") == series_radius_) settings_.set("radius", "");
+    series_color_by_.reset();
     load(true);
 }
 
-void Session::load(bool keep_camera) {
+void Session::load(bool keep_camera, std::vector<int> series) {
     if (keep_camera) fix_camera();
-    loader_.load({files_, settings_, ++load_number_});
+    loader_.load({files_, settings_, ++load_number_, std::move(series)});
 }
 
 bool Session::files_are_there() {
@@ -103,6 +107,7 @@ void Session::take(LoadResult result) {
     infos_ = std::move(result.infos);
     primitives_ = result.primitives;
     loaded_ = std::move(result.request.settings);
+    if (result.looked_through) keep_series(loaded_);
     frames_ = 1 << 30;
     for (const FileInfo& info : infos_) frames_ = std::min(frames_, info.frames);
     if (first || message_.is_error) message_ = {};
@@ -131,6 +136,7 @@ void Session::set(const std::string& name, const std::string& value) {
     const auto info = std::ranges::find(infos, name, &SettingInfo::name);
     if (info != infos.end() && info->repeatable) settings.set(name, "");
     settings.set(name, value);
+    if (name == "color-by") forget_range(settings);
     validate(settings);
     if (settings.get(name) == settings_.get(name)) return;
     if (!is_of_view(name)) history_.remember(settings_, name, Clock::now());
@@ -227,6 +233,50 @@ void Session::set_frame(int frame) {
     set("frame", std::to_string(wrapped));
 }
 
+void Session::play(bool on) {
+    playing_ = on && frames_ > 1;
+    if (!playing_) loader_.stop_looking();
+}
+
+/// Whether each frame may choose for itself what those of an animation have in common.
+bool Session::chooses_by_frame() const {
+    if (series_color_by_ == settings_.get("color-by")) return false;
+    const auto has_range = [](const FileInfo& info) { return info.color_range.has_value(); };
+    const bool range =
+        settings_.get("color-range").empty() && std::ranges::any_of(infos_, has_range);
+    const bool radius = settings_.get("radius").empty() && infos_.size() == 1 &&
+                        infos_.front().chosen_radius.has_value();
+    return range || radius;
+}
+
+/// The frames to look through: of very many so many as tell enough.
+std::vector<int> Session::series() const {
+    constexpr int kMost = 256;
+    const int count = std::min(frames_, kMost);
+    std::vector<int> frames;
+    for (int k = 0; k < count; ++k) {
+        frames.push_back(static_cast<int>(std::int64_t{k} * (frames_ - 1) / (count - 1)));
+    }
+    return frames;
+}
+
+/// They become settings like all others, so that the command line draws the picture.
+void Session::keep_series(const Settings& found) {
+    series_color_by_ = found.get("color-by");
+    series_range_ = found.get("color-range");
+    series_radius_ = found.get("radius");
+    Settings settings = settings_;
+    settings.set("color-range", series_range_).set("radius", series_radius_);
+    if (settings.changed() == settings_.changed()) return;
+    history_.remember(settings_, "color-range", Clock::now());
+    settings_ = std::move(settings);
+}
+
+/// Another field, or other files: their range is another.
+void Session::forget_range(Settings& settings) const {
+    if (settings.get("color-range") == series_range_) settings.set("color-range", "");
+}
+
 std::optional<Clock::time_point> Session::next_update() const {
     if (!playing_ || loader_.busy()) return std::nullopt;
     const auto pause = std::chrono::duration<double>(1.0 / std::max(frames_per_second, 0.1));
@@ -281,7 +331,11 @@ bool Session::update() {
     const bool seen = painting_.settings.get("frame") == settings_.get("frame");
     if (next && seen && Clock::now() >= *next) {
         frame_shown_ = Clock::now();
-        set_frame(frame() + 1);
+        if (chooses_by_frame()) {
+            load(true, series());
+        } else {
+            set_frame(frame() + 1);
+        }
     }
     return news;
 }

@@ -81,7 +81,11 @@ class Session {
     int frame() const;
     void set_frame(int frame);  ///< wraps round at both ends
     bool playing() const { return playing_; }
-    void play(bool on) { playing_ = on && frames_ > 1; }
+    /// Plays all frames alike: with one range of colours and one radius, where these are left to
+    /// each frame, as `inktrace render` draws them. All frames are looked through first.
+    void play(bool on);
+    /// Share of the frames that has been, in [0, 1).
+    double looked_through() const { return loader_.looked_through(); }
     double frames_per_second = 15.0;  ///< of playing, at most
 
     // ---- Picture ----
@@ -127,7 +131,11 @@ class Session {
     void say(std::string text, bool is_error = false) { message_ = {std::move(text), is_error}; }
 
   private:
-    void load(bool keep_camera);
+    void load(bool keep_camera, std::vector<int> series = {});
+    bool chooses_by_frame() const;
+    std::vector<int> series() const;
+    void keep_series(const Settings& found);
+    void forget_range(Settings& settings) const;
     void take(LoadResult result);
     void paint(bool in_motion);
     bool draws_faces() const;
@@ -151,6 +159,8 @@ class Session {
     std::uint64_t picture_number_ = 0;
     Message message_;
     bool playing_ = false;
+    std::optional<std::string> series_color_by_;  ///< the frames have been looked through for,
+    std::string series_range_, series_radius_;    ///< and this was found
     Clock::time_point frame_shown_{};
     std::atomic<bool> files_changed_ = false;
 

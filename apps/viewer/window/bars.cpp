@@ -33,6 +33,9 @@ std::string activity(const Session& session) {
     if (session.exporting()) {
         return fmt::format("writing {:.0f} %", 100.0 * session.export_progress());
     }
+    if (session.looked_through() > 0.0) {
+        return fmt::format("reading {:.0f} %", 100.0 * session.looked_through());
+    }
     if (session.loading()) return "loading";
     const Painting& painting = session.painting();
     if (painting.picture && !painting.exact && session.refinement() > 0.0) {
