@@ -400,5 +400,82 @@ TEST(Slit, HasNoDotWhereTwoWallsMeetInIt) {
     }
 }
 
+// Detection
+
+/// What lies between two points of a grid, by the definition.
+Suspicion between(const SampleGrid& grid, std::size_t a, std::size_t b,
+                  const DetectSettings& settings) {
+    if (grid.id[a] != grid.id[b]) return Suspicion::id;
+    if (grid.id[a] == kBackground) return Suspicion::none;
+    if (!grid.surface.empty() && grid.surface[a] == grid.surface[b] &&
+        grid.surface[a] < SampleGrid::kUnknownSurface) {
+        return Suspicion::none;
+    }
+    const Sample p = grid.sample(a);
+    const Sample q = grid.sample(b);
+    const Vec3d chord = to_double(q.position) - to_double(p.position);
+    const Vec3d mean = normalize(to_double(p.normal) + to_double(q.normal));
+    const double least = std::max<double>(settings.chord_sine * length(chord), settings.least_jump);
+    if (std::abs(dot(chord, mean)) > least) return Suspicion::depth;
+    const double cosine = dot(to_double(p.normal), to_double(q.normal));
+    return cosine < settings.crease_cosine ? Suspicion::normal : Suspicion::none;
+}
+
+/// Steps, slopes and gaps at random; surfaces two points wide, every third of them unknown.
+SampleGrid random_grid(int width, int height, bool with_surfaces) {
+    std::mt19937 random(static_cast<unsigned>(7 * width + height));
+    std::uniform_real_distribution<float> slope(-0.2F, 0.2F);
+    SampleGrid grid;
+    grid.resize(width, height);
+    if (with_surfaces) grid.surface.resize(grid.id.size());
+    for (int j = 0; j < height; ++j) {
+        for (int i = 0; i < width; ++i) {
+            const std::size_t k = grid.index(i, j);
+            grid.id[k] = static_cast<GeometryId>(random() % 5 == 0 ? random() % 3 : 1);
+            grid.px[k] = static_cast<float>(i);
+            grid.py[k] = static_cast<float>(j);
+            grid.pz[k] = random() % 4 == 0 ? 5.0F * slope(random) : 0.0F;
+            const Vec3f normal = normalize(Vec3f{slope(random), slope(random), 1.0F});
+            grid.nx[k] = normal.x;
+            grid.ny[k] = normal.y;
+            grid.nz[k] = normal.z;
+            if (!with_surfaces) continue;
+            const auto number = static_cast<std::uint32_t>(i / 2 + 100 * (j / 2));
+            grid.surface[k] = number + (number % 3 == 0 ? SampleGrid::kUnknownSurface : 0);
+        }
+    }
+    return grid;
+}
+
+TEST(Detection, SuspectsWhatItsDefinitionSaysInGridsOfAnySize) {
+    using Edge = std::tuple<int, int, bool, Suspicion>;
+    DetectSettings settings;
+    settings.least_jump = 0.05F;
+    for (const bool with_surfaces : {false, true}) {
+        for (const auto& [width, height] :
+             {std::pair{1, 1}, {2, 3}, {7, 5}, {16, 16}, {17, 2}, {65, 65}, {130, 9}}) {
+            const SampleGrid grid = random_grid(width, height, with_surfaces);
+            std::vector<SuspectEdge> found;
+            detect(grid, settings, found);
+            std::set<Edge> edges;
+            for (const SuspectEdge& e : found) edges.insert({e.i, e.j, e.down, e.suspicion});
+            EXPECT_EQ(edges.size(), found.size());
+            std::set<Edge> expected;
+            for (int j = 0; j < height; ++j) {
+                for (int i = 0; i < width; ++i) {
+                    for (const bool down : {false, true}) {
+                        if (down ? j + 1 == height : i + 1 == width) continue;
+                        const std::size_t other =
+                            grid.index(i + (down ? 0 : 1), j + (down ? 1 : 0));
+                        const Suspicion kind = between(grid, grid.index(i, j), other, settings);
+                        if (kind != Suspicion::none) expected.insert({i, j, down, kind});
+                    }
+                }
+            }
+            EXPECT_EQ(edges, expected) << width << " x " << height;
+        }
+    }
+}
+
 }  // namespace
 }  // namespace ink::test

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <bit>
-#include <span>
+#include <memory>
 
 #include "base/lanes.h"
 
@@ -12,29 +12,37 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
-#ifndef INK_DETECT_ROWS
-#define INK_DETECT_ROWS
+#ifndef INK_DETECT_RUNS
+#define INK_DETECT_RUNS
 namespace ink {
 
-/// Part of a row of the grid as pointers.
-struct GridRow {
+/// The planes of a grid as pointers.
+struct GridPlanes {
     const GeometryId* id;
+    const std::uint32_t* surface;
     const float *px, *py, *pz, *nx, *ny, *nz;
 
-    GridRow(const SampleGrid& grid, std::size_t first)
-        : id(grid.id.data() + first),
-          px(grid.px.data() + first),
-          py(grid.py.data() + first),
-          pz(grid.pz.data() + first),
-          nx(grid.nx.data() + first),
-          ny(grid.ny.data() + first),
-          nz(grid.nz.data() + first) {}
+    explicit GridPlanes(const SampleGrid& grid)
+        : id(grid.id.data()),
+          surface(grid.surface.empty() ? nullptr : grid.surface.data()),
+          px(grid.px.data()),
+          py(grid.py.data()),
+          pz(grid.pz.data()),
+          nx(grid.nx.data()),
+          ny(grid.ny.data()),
+          nz(grid.nz.data()) {}
 };
 
-/// Bit i is set for the edge between points i of two rows.
+/// Bit i is set for the edge that hangs on point i of sixteen.
 struct Suspects {
     std::uint32_t id, depth, normal;
     std::uint32_t any() const { return id | depth | normal; }
+};
+
+/// The edges of sixteen points that follow each other in the grid, row after row.
+struct SuspectRun {
+    std::size_t first;
+    Suspects right, down;
 };
 
 }  // namespace ink
@@ -68,19 +76,30 @@ HWY_INLINE std::uint32_t bits_of([[maybe_unused]] Tag tag, Mask mask) {
 struct Surface {
     Number px, py, pz, nx, ny, nz;
 
-    HWY_INLINE Surface(const GridRow& row, int i)
-        : px(load(row.px + i)),
-          py(load(row.py + i)),
-          pz(load(row.pz + i)),
-          nx(load(row.nx + i)),
-          ny(load(row.ny + i)),
-          nz(load(row.nz + i)) {}
+    HWY_INLINE Surface(const GridPlanes& grid, std::size_t at)
+        : px(load(grid.px + at)),
+          py(load(grid.py + at)),
+          pz(load(grid.pz + at)),
+          nx(load(grid.nx + at)),
+          ny(load(grid.ny + at)),
+          nz(load(grid.nz + at)) {}
+};
+
+/// DetectSettings as they are compared with.
+struct Thresholds {
+    Number sine_squared, least_squared;
+    Number crease;  ///< the square of the sum of two unit vectors is 2 (1 + cosine)
+
+    HWY_INLINE explicit Thresholds(const DetectSettings& settings)
+        : sine_squared(hn::Set(kFloats, settings.chord_sine * settings.chord_sine)),
+          least_squared(hn::Set(kFloats, settings.least_jump * settings.least_jump)),
+          crease(hn::Set(kFloats, 2.0F + 2.0F * settings.crease_cosine)) {}
 };
 
 /// Between hits of one geometry: which of them do not fit one smooth surface, and where normals
 /// turn.
 HWY_INLINE void compare_surfaces(const Surface& a, const Surface& b, int i,
-                                 const DetectSettings& settings, Suspects& found) {
+                                 const Thresholds& thresholds, Suspects& found) {
     const auto dot = [](Number ax, Number ay, Number az, Number bx, Number by, Number bz) {
         return hn::Add(hn::Add(hn::Mul(ax, bx), hn::Mul(ay, by)), hn::Mul(az, bz));
     };
@@ -93,27 +112,37 @@ HWY_INLINE void compare_surfaces(const Surface& a, const Surface& b, int i,
     const Number along = dot(cx, cy, cz, mx, my, mz);
     const Number chord_squared = dot(cx, cy, cz, cx, cy, cz);
     const Number normal_squared = dot(mx, my, mz, mx, my, mz);
-    const Number sine_squared = hn::Set(kFloats, settings.chord_sine * settings.chord_sine);
-    const Number least_squared = hn::Set(kFloats, settings.least_jump * settings.least_jump);
     const Number bound =
-        hn::Mul(hn::Max(hn::Mul(sine_squared, chord_squared), least_squared), normal_squared);
-    const Number turn = dot(a.nx, a.ny, a.nz, b.nx, b.ny, b.nz);
+        hn::Mul(hn::Max(hn::Mul(thresholds.sine_squared, chord_squared), thresholds.least_squared),
+                normal_squared);
     found.depth |= bits_of(kFloats, hn::Gt(hn::Mul(along, along), bound)) << i;
-    found.normal |= bits_of(kFloats, hn::Lt(turn, hn::Set(kFloats, settings.crease_cosine))) << i;
+    found.normal |= bits_of(kFloats, hn::Lt(normal_squared, thresholds.crease)) << i;
 }
 
 /// Where the IDs of sixteen edges differ; and those that hit one geometry at both ends.
-HWY_INLINE std::uint32_t compare_ids(const GridRow& a, const GridRow& b, std::uint32_t wanted,
+HWY_INLINE std::uint32_t compare_ids(const GeometryId* a, const GeometryId* b, std::uint32_t wanted,
                                      Suspects& found) {
     std::uint32_t hit = 0;
     for (int i = 0; i < kLanes; i += kStep) {
-        const auto first = hn::LoadU(kIds, a.id + i);
-        const auto second = hn::LoadU(kIds, b.id + i);
+        const auto first = hn::LoadU(kIds, a + i);
+        const auto second = hn::LoadU(kIds, b + i);
         found.id |= bits_of(kIds, hn::Ne(first, second)) << i;
         hit |= bits_of(kIds, hn::Ne(first, hn::Set(kIds, kBackground))) << i;
     }
     found.id &= wanted;
     return hit & wanted & ~found.id;
+}
+
+/// Between which of sixteen pairs of hits no line runs, as they lie on one surface.
+HWY_INLINE std::uint32_t share_surface(const std::uint32_t* a, const std::uint32_t* b) {
+    std::uint32_t shared = 0;
+    for (int i = 0; i < kLanes; i += kStep) {
+        const auto first = hn::LoadU(kIds, a + i);
+        const auto second = hn::LoadU(kIds, b + i);
+        const auto known = hn::Lt(first, hn::Set(kIds, SampleGrid::kUnknownSurface));
+        shared |= bits_of(kIds, hn::And(hn::Eq(first, second), known)) << i;
+    }
+    return shared;
 }
 
 HWY_INLINE void keep(std::uint32_t hit, const DetectSettings& settings, Suspects& found) {
@@ -122,39 +151,49 @@ HWY_INLINE void keep(std::uint32_t hit, const DetectSettings& settings, Suspects
 }
 
 /// The first `count` edges of sixteen.
-HWY_INLINE std::uint32_t first_bits(int count) {
-    return count <= 0 ? 0 : (1U << std::min(count, kLanes)) - 1;
+HWY_INLINE std::uint32_t first_bits(std::size_t count) {
+    return (1U << std::min<std::size_t>(count, kLanes)) - 1;
 }
 
-/// The edges that hang on the points of a row, to the right and down to the row `below`, sixteen an
-/// entry. False if there are no suspects.
-bool compare(const SampleGrid& grid, std::size_t row, std::size_t below, bool has_below,
-             const DetectSettings& settings, Suspects* right, Suspects* down) {
-    std::uint32_t any = 0;
-    for (int first = 0; first < grid.width; first += kLanes) {
-        const auto offset = static_cast<std::size_t>(first);
-        const GridRow a(grid, row + offset);
-        const GridRow b(grid, row + offset + 1);
-        const GridRow c(grid, below + offset);
+/// Compares all points with those on the right and below. Returns how many runs have a suspect.
+std::size_t compare(const SampleGrid& grid, const DetectSettings& settings, SuspectRun* runs) {
+    const GridPlanes planes(grid);
+    const Thresholds thresholds(settings);
+    const bool by_surface = settings.depths || settings.normals;
+    const auto width = static_cast<std::size_t>(grid.width);
+    const std::size_t count = width * static_cast<std::size_t>(grid.height);
+    const std::size_t last_row = count - width;
+    std::size_t row_end = width - 1;  // nothing on its right
+    const SuspectRun* const before = runs;
+    for (std::size_t first = 0; first < count; first += kLanes) {
+        std::uint32_t has_right = first_bits(count - first);
+        for (; row_end < first + kLanes; row_end += width) has_right &= ~(1U << (row_end - first));
+        const std::uint32_t has_below = first < last_row ? first_bits(last_row - first) : 0;
+        const std::size_t below = has_below != 0 ? first + width : first;
         Suspects across{};
         Suspects along{};
-        const std::uint32_t hit_b = compare_ids(a, b, first_bits(grid.width - 1 - first), across);
-        const std::uint32_t hit_c =
-            compare_ids(a, c, has_below ? first_bits(grid.width - first) : 0, along);
-        if ((hit_b | hit_c) != 0 && (settings.depths || settings.normals)) {
+        const GeometryId* const id = planes.id + first;
+        std::uint32_t hit_b = compare_ids(id, id + 1, has_right, across);
+        std::uint32_t hit_c = compare_ids(id, planes.id + below, has_below, along);
+        if (planes.surface != nullptr && (hit_b | hit_c) != 0) {
+            const std::uint32_t* const surface = planes.surface + first;
+            hit_b &= ~share_surface(surface, surface + 1);
+            hit_c &= ~share_surface(surface, planes.surface + below);
+        }
+        if ((hit_b | hit_c) != 0 && by_surface) {
             for (int i = 0; i < kLanes; i += kStep) {
-                const Surface own(a, i);
-                compare_surfaces(own, Surface(b, i), i, settings, across);
-                compare_surfaces(own, Surface(c, i), i, settings, along);
+                const auto at = static_cast<std::size_t>(i);
+                const Surface own(planes, first + at);
+                compare_surfaces(own, Surface(planes, first + at + 1), i, thresholds, across);
+                compare_surfaces(own, Surface(planes, below + at), i, thresholds, along);
             }
             keep(hit_b, settings, across);
             keep(hit_c, settings, along);
         }
-        any |= across.any() | along.any();
-        *right++ = across;
-        *down++ = along;
+        *runs = {first, across, along};
+        if ((across.any() | along.any()) != 0) ++runs;
     }
-    return any != 0;
+    return static_cast<std::size_t>(runs - before);
 }
 
 }  // namespace ink::HWY_NAMESPACE
@@ -168,18 +207,29 @@ HWY_EXPORT(compare);
 
 namespace {
 
-void collect(std::span<const Suspects> row, int j, bool down, std::vector<SuspectEdge>& edges) {
-    int i = 0;
-    for (const Suspects& some : row) {
-        for (std::uint32_t rest = some.any(); rest != 0; rest &= rest - 1) {
-            const std::uint32_t bit = rest & (0U - rest);
-            const Suspicion suspicion = (some.id & bit) != 0      ? Suspicion::id
-                                        : (some.depth & bit) != 0 ? Suspicion::depth
-                                                                  : Suspicion::normal;
-            edges.push_back({static_cast<std::uint16_t>(i + std::countr_zero(rest)),
-                             static_cast<std::uint16_t>(j), down, suspicion});
-        }
-        i += kLanes;
+/// Of edges that hang on points of row j, the first of which is (i, j).
+void collect(const Suspects& some, std::uint32_t those, int i, int j, bool down,
+             std::vector<SuspectEdge>& edges) {
+    for (std::uint32_t rest = some.any() & those; rest != 0; rest &= rest - 1) {
+        const std::uint32_t bit = rest & (0U - rest);
+        const Suspicion suspicion = (some.id & bit) != 0      ? Suspicion::id
+                                    : (some.depth & bit) != 0 ? Suspicion::depth
+                                                              : Suspicion::normal;
+        edges.push_back({static_cast<std::uint16_t>(i + std::countr_zero(rest)),
+                         static_cast<std::uint16_t>(j), down, suspicion});
+    }
+}
+
+void collect(const SuspectRun& run, int width, std::vector<SuspectEdge>& edges) {
+    const auto first = static_cast<int>(run.first);
+    int i = first % width;
+    int j = first / width;
+    for (int begin = 0; begin < kLanes; i = 0, ++j) {
+        const int end = std::min(begin + width - i, kLanes);
+        const std::uint32_t those = (1U << end) - (1U << begin);
+        collect(run.right, those, i - begin, j, false, edges);
+        collect(run.down, those, i - begin, j, true, edges);
+        begin = end;
     }
 }
 
@@ -188,20 +238,13 @@ void collect(std::span<const Suspects> row, int j, bool down, std::vector<Suspec
 void detect(const SampleGrid& grid, const DetectSettings& settings,
             std::vector<SuspectEdge>& edges) {
     edges.clear();
-    const auto size = static_cast<std::size_t>((grid.width + kLanes - 1) / kLanes);
-    std::vector<Suspects> right(size);
-    std::vector<Suspects> down(size);
-    for (int j = 0; j < grid.height; ++j) {
-        const bool has_below = j + 1 < grid.height;
-        const std::size_t row = grid.index(0, j);
-        const std::size_t below = has_below ? grid.index(0, j + 1) : row;
-        if (!HWY_DYNAMIC_DISPATCH(compare)(grid, row, below, has_below, settings, right.data(),
-                                           down.data())) {
-            continue;
-        }
-        collect(right, j, false, edges);
-        collect(down, j, true, edges);
-    }
+    const auto points =
+        static_cast<std::size_t>(grid.width) * static_cast<std::size_t>(grid.height);
+    // One more, for what has no suspects.
+    const std::size_t most = (points + kLanes - 1) / kLanes + 1;
+    const auto runs = std::make_unique_for_overwrite<SuspectRun[]>(most);
+    const std::size_t count = HWY_DYNAMIC_DISPATCH(compare)(grid, settings, runs.get());
+    for (std::size_t k = 0; k < count; ++k) collect(runs[k], grid.width, edges);
 }
 
 }  // namespace ink

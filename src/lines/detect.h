@@ -39,7 +39,7 @@ struct SuspectEdge {
     Suspicion suspicion;
 };
 
-/// Finds the suspect edges between all neighbours on a grid, row by row.
+/// Finds the suspect edges between all neighbours on a grid, row by row, sixteen points at a time.
 void detect(const SampleGrid& grid, const DetectSettings& settings,
             std::vector<SuspectEdge>& edges);
 

@@ -91,6 +91,7 @@ void LineFinder::trace_lattice(const Tile& tile) {
     grid_.spacing = 1.0F / static_cast<float>(q);
     grid_.resize((tile.x1 - tile.x0) * q + 1, (tile.y1 - tile.y0) * q + 1);
     std::ranges::fill(grid_.id, kBackground);
+    if (!ids_only_) grid_.surface.resize(grid_.id.size());
 
     // The last column and row of blocks reach beyond the grid, but for strips.
     const float beyond = static_cast<float>(lays_strips() ? 1 : kBlockSide) * grid_.spacing;
@@ -226,6 +227,9 @@ void LineFinder::fill_grid(std::size_t block) {
     for (std::size_t k = 0; k < planes.size(); ++k) {
         copy_to_grid(block, values[k].data(), planes[k]);
     }
+    Lanes<std::uint32_t> surfaces;
+    edges_.surfaces.number(hits_[block], surfaces);
+    copy_to_grid(block, surfaces.data(), grid_.surface.data());
 }
 
 /// Copies the values of a block to their places in a plane of the grid.
@@ -337,9 +341,7 @@ void LineFinder::find_lines() {
         DetectSettings settings = edges_.detect;
         if (ids_only_) settings.depths = settings.normals = false;
         detect(grid_, settings, suspects_);
-        if (!ids_only_) {
-            std::erase_if(suspects_, [this](const SuspectEdge& edge) { return is_smooth(edge); });
-        }
+        if (!ids_only_) drop_smooth();
     }
     {
         const Timer phase(stats_.locate_ms);
@@ -515,19 +517,42 @@ void LineFinder::identify(std::span<const Vec2f> points, std::span<SurfaceKey> o
     }
 }
 
-/// Whether the scene rules out a line that the samples alone let suspect.
-bool LineFinder::is_smooth(const SuspectEdge& edge) const {
-    if (edge.suspicion == Suspicion::id) return false;
-    const LatticeHit a = hit_at(edge.i, edge.j);
-    const int i_b = edge.i + (edge.down ? 0 : 1);
-    const int j_b = edge.j + (edge.down ? 1 : 0);
-    const LatticeHit b = hit_at(i_b, j_b);
+/// Drops suspects where the scene rules out a line that the samples alone let suspect. What it
+/// knows of their triangles is asked for well before it is read.
+void LineFinder::drop_smooth() {
+    const Surfaces& surfaces = edges_.surfaces;
+    pairs_.clear();
+    for (const SuspectEdge& edge : suspects_) {
+        if (edge.suspicion == Suspicion::id) continue;
+        const LatticeHit a = hit_at(edge.i, edge.j);
+        const LatticeHit b = hit_at(edge.i + (edge.down ? 0 : 1), edge.j + (edge.down ? 1 : 0));
+        surfaces.prefetch(*a.hits, a.lane, *b.hits, b.lane);
+        pairs_.push_back({a, b});
+    }
+    constexpr std::size_t kAhead = 4;
+    std::size_t kept = 0;
+    std::size_t next = 0;
+    for (const SuspectEdge edge : suspects_) {
+        if (edge.suspicion != Suspicion::id) {
+            if (next + kAhead < pairs_.size()) {
+                const auto& [a, b] = pairs_[next + kAhead];
+                surfaces.prefetch_corners(*a.hits, a.lane, *b.hits, b.lane);
+            }
+            if (is_smooth(edge, pairs_[next++])) continue;
+        }
+        suspects_[kept++] = edge;
+    }
+    suspects_.resize(kept);
+}
+
+bool LineFinder::is_smooth(const SuspectEdge& edge, const HitPair& pair) const {
     const auto position = [&](int i, int j) -> Vec3f {
         const std::size_t k = grid_.index(i, j);
         return {grid_.px[k], grid_.py[k], grid_.pz[k]};
     };
+    const auto& [a, b] = pair;
     const Vec3f at_a = position(edge.i, edge.j);
-    const Vec3f at_b = position(i_b, j_b);
+    const Vec3f at_b = position(edge.i + (edge.down ? 0 : 1), edge.j + (edge.down ? 1 : 0));
     return edges_.surfaces.smooth_between(*a.hits, a.lane, &at_a, *b.hits, b.lane, &at_b);
 }
 

@@ -153,7 +153,11 @@ class LineFinder {
         const BlockPlace place = place_of(i, j);
         return {&hits_[place.block], place.lane};
     }
-    bool is_smooth(const SuspectEdge& edge) const;
+    void drop_smooth();
+    struct HitPair {
+        LatticeHit a, b;
+    };
+    bool is_smooth(const SuspectEdge& edge, const HitPair& pair) const;
     void describe(std::size_t point, Sample& sample) const;
     void locate();
     void close_slits();
@@ -236,6 +240,7 @@ class LineFinder {
     std::vector<ClosedPoint> closed_;
     std::vector<HitPacket> point_hits_;
     std::vector<SuspectEdge> suspects_;
+    std::vector<HitPair> pairs_;  ///< of suspects, what their ends hit
     std::vector<MeshEdge> mesh_edges_;
     std::vector<std::uint32_t> others_;  ///< suspects between anything else
     std::vector<Crossing> crossings_;

@@ -84,6 +84,10 @@ struct SampleGrid {
     std::vector<float> px, py, pz;  ///< position
     std::vector<float> nx, ny, nz;  ///< normal
     std::vector<float> t;
+    /// Empty, or which surface was hit: between two points with the same number runs no line, if it
+    /// is less than kUnknownSurface. Unset on a miss.
+    std::vector<std::uint32_t> surface;
+    static constexpr std::uint32_t kUnknownSurface = 1U << 31U;
 
     void resize(int new_width, int new_height) {
         width = new_width;

@@ -7,6 +7,8 @@
 #include <limits>
 #include <variant>
 
+#include "base/multiversion.h"
+
 namespace ink {
 
 namespace {
@@ -109,11 +111,60 @@ bool smooth_glyph(const UnitShape& shape, const Placement& placement, Vec3f norm
     return false;
 }
 
+/// Whether no primitive has a line within itself.
+bool has_plain_primitives(const Shape& shape) {
+    return std::holds_alternative<Mesh>(shape) || std::holds_alternative<Spheres>(shape);
+}
+
+INKTRACE_MULTIVERSION
+void number_hits(const std::uint32_t* firsts, const HitPacket& hits,
+                 Lanes<std::uint32_t>& numbers) {
+    for (int i = 0; i < kLanes; ++i) {
+        const std::uint32_t object = hits.object[i] == kNoObject ? 0 : hits.object[i];
+        numbers[i] = firsts[object] + hits.primitive[i];
+    }
+}
+
 }  // namespace
 
 Surfaces::Surfaces(const Scene& scene, NormalSource normals) : scene_(scene), normals_(normals) {
+    std::size_t next = 0;
     for (const Object& object : scene.objects()) {
         spheres_.push_back(std::get_if<Spheres>(&object.shape));
+        meshes_.push_back(std::get_if<Mesh>(&object.shape));
+        const std::size_t past = next + object.primitive_count();
+        const bool plain =
+            has_plain_primitives(object.shape) && past <= SampleGrid::kUnknownSurface;
+        numbers_.push_back(plain ? static_cast<std::uint32_t>(next) : SampleGrid::kUnknownSurface);
+        if (plain) next = past;
+    }
+}
+
+void Surfaces::number(const HitPacket& hits, Lanes<std::uint32_t>& numbers) const {
+    if (numbers_.size() == 1 && numbers_[0] == 0) {
+        numbers = hits.primitive;
+    } else {
+        number_hits(numbers_.data(), hits, numbers);
+    }
+}
+
+void Surfaces::prefetch(const HitPacket& a, int lane_a, const HitPacket& b, int lane_b) const {
+    const Mesh* mesh = meshes_[a.object[lane_a]];
+    if (mesh == nullptr || mesh->twins.empty()) return;
+    const std::size_t own = a.primitive[lane_a];
+    __builtin_prefetch(&mesh->twins[3 * own]);
+    __builtin_prefetch(&mesh->triangles[own]);
+    __builtin_prefetch(&mesh->triangles[b.primitive[lane_b]]);
+}
+
+void Surfaces::prefetch_corners(const HitPacket& a, int lane_a, const HitPacket& b,
+                                int lane_b) const {
+    const Mesh* mesh = meshes_[a.object[lane_a]];
+    if (mesh == nullptr) return;
+    for (const std::uint32_t triangle : {a.primitive[lane_a], b.primitive[lane_b]}) {
+        for (const std::uint32_t vertex : mesh->triangles[triangle]) {
+            __builtin_prefetch(&mesh->vertices[vertex]);
+        }
     }
 }
 
@@ -182,18 +233,16 @@ bool Surfaces::smooth_between(const HitPacket& a, int lane_a, const Vec3f* at_a,
 
 bool Surfaces::across_smooth_edge(const Mesh& mesh, std::uint32_t a, Vec3f normal_a,
                                   std::uint32_t b, Vec3f normal_b) const {
-    if (mesh.edge_flags.empty()) return false;
-    const Mesh::Triangle& first = mesh.triangles[a];
-    const Mesh::Triangle& second = mesh.triangles[b];
-    for (std::size_t k = 0; k < 3; ++k) {
-        const std::uint32_t from = first[k];
-        const std::uint32_t to = first[(k + 1) % 3];
-        for (std::size_t n = 0; n < 3; ++n) {
-            // The other triangle runs the edge the other way, if both face one side.
-            if (second[n] != to || second[(n + 1) % 3] != from) continue;
-            return !mesh.is_crease(a, k) && !mesh.is_boundary(a, k) &&
-                   shows_front(mesh, first, normal_a) == shows_front(mesh, second, normal_b);
-        }
+    if (mesh.edge_flags.empty() || mesh.twins.empty()) return false;
+    for (std::uint32_t k = 0; k < 3; ++k) {
+        const std::uint32_t twin = mesh.twins[3 * a + k];
+        if (twin - 3 * b >= 3) continue;
+        const Mesh::Triangle& first = mesh.triangles[a];
+        const Mesh::Triangle& second = mesh.triangles[b];
+        // The other triangle runs the edge the other way, if both face one side.
+        if (second[twin - 3 * b] == first[k]) continue;
+        return !mesh.is_crease(a, k) && !mesh.is_boundary(a, k) &&
+               shows_front(mesh, first, normal_a) == shows_front(mesh, second, normal_b);
     }
     return false;
 }

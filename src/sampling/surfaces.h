@@ -40,6 +40,14 @@ class Surfaces {
     float face_crossing(const Viewpoint& viewpoint, Vec2f a, const HitPacket& hits_a, int lane_a,
                         Vec2f b, const HitPacket& hits_b, int lane_b) const;
 
+    /// Numbers for hits as SampleGrid::surface has them: one for each sphere or triangle.
+    void number(const HitPacket& hits, Lanes<std::uint32_t>& numbers) const;
+
+    /// Asks for what `smooth_between` will read of the triangles that were hit: first, or when that
+    /// is there.
+    void prefetch(const HitPacket& a, int lane_a, const HitPacket& b, int lane_b) const;
+    void prefetch_corners(const HitPacket& a, int lane_a, const HitPacket& b, int lane_b) const;
+
     /// Whether no line can run between two hits that are neighbours on screen: they lie on one
     /// sphere, ellipsoid, triangle, disc, face of a box, or on the side of one frustum, or on two
     /// triangles that share an edge which is no crease, and neither of which is turned away. False
@@ -58,6 +66,8 @@ class Surfaces {
     const Scene& scene_;
     NormalSource normals_;
     std::vector<const Spheres*> spheres_;  ///< of each object; null: other shapes
+    std::vector<const Mesh*> meshes_;      ///< likewise
+    std::vector<std::uint32_t> numbers_;   ///< of the first primitive of each object
 };
 
 }  // namespace ink
