@@ -12,6 +12,7 @@
 #include <span>
 #include <stdexcept>
 
+#include "session/keep_memory.h"
 #include "session/waiting_owner.h"
 
 namespace ink::bench {
@@ -162,6 +163,7 @@ std::vector<double> interrupt(Driver& driver, int moves) {
 
 SessionRow measure_session(const std::filesystem::path& file, int side, int rounds,
                            const std::vector<std::pair<std::string, std::string>>& flags) {
+    inktrace::viewer::keep_memory();
     Driver driver;
     Session& session = driver.session;
     session.open({file}, flags);

@@ -78,6 +78,18 @@ TEST(Pace, StaysWithAScaleWhileOtherProgramsDisturbIt) {
     }
 }
 
+TEST(Pace, JudgesFewerRaysAnewAfterARestWhereTheySeemedTooSlow) {
+    const auto cost = [](double scale) { return 10.0 + 20.0 * scale; };
+    Pace pace;
+    pace.plain_took(8.0);
+    for (int k = 0; k < 40; ++k) {  // disturbed whenever it takes fewer rays
+        pace.frame_took(pace.scale(), cost(pace.scale()) * (pace.scale() < 1.0 ? 3.0 : 1.0));
+    }
+    pace.plain_took(8.0);
+    for (int k = 0; k < 40; ++k) pace.frame_took(pace.scale(), cost(pace.scale()));
+    EXPECT_EQ(pace.scale(), 0.25);
+}
+
 TEST(Pace, TakesMoreRaysAgainWhenFramesBecomeCheap) {
     Pace pace;
     pace.plain_took(15.0);

@@ -11,6 +11,7 @@
 
 #include "inktrace/inktrace.h"
 #include "program.h"
+#include "session/keep_memory.h"
 #include "window/viewer.h"
 
 namespace {
@@ -59,6 +60,7 @@ int run(int argc, char** argv) {
         if (error.get_exit_code() == 0) return app.exit(error);
         return fail(std::string(error.what()) + "\nSee 'inktrace view --help'.", kBadUsage);
     }
+    viewer::keep_memory();
     try {
         const auto flags = given(app);
         Settings settings;  // what makes no sense is said before a window opens

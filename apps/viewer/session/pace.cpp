@@ -15,7 +15,7 @@ std::size_t step_of(double scale) {
     return static_cast<std::size_t>(found - kScales.begin()) % kScales.size();
 }
 
-/// Of two costs, one is not worth fewer rays.
+/// What costs no more than so many times the least is as good.
 constexpr double kNothing = 1.1;
 
 }  // namespace
@@ -27,6 +27,8 @@ void Pace::plain_took(double ms) {
     constexpr double kWithLines = 1.2;
     constexpr double kShortest = 8.0;
     target_ms_ = std::clamp(kWithLines * ms, kShortest, kLongest);
+    // Of fewer rays, too slow as well, it may have been another program's fault: see again.
+    if (took_ms_[step_] > target_ms_) forget();
 }
 
 void Pace::forget() {
@@ -103,7 +105,9 @@ void Pace::choose() {
         for (std::size_t step = step_ + 1; step <= last_step_; ++step) {
             if (expected_ms(step) <= target_ms_) return go_to(step);
         }
-        return go_to(cheapest_step());
+        const std::size_t cheapest = cheapest_step();
+        if (cheapest > step_ || frames_ >= kFrames) go_to(cheapest);
+        return;
     }
     if (frames_ < kFrames) return;
     for (std::size_t step = 0; step < step_; ++step) {
@@ -118,11 +122,10 @@ std::size_t Pace::cheapest_step() const {
     for (std::size_t step = 1; step <= last_step_; ++step) {
         if (expected_ms(step) < expected_ms(cheapest)) cheapest = step;
     }
-    if (expected_ms(step_) < kNothing * expected_ms(cheapest)) cheapest = step_;
-    while (cheapest > 0 && expected_ms(cheapest - 1) < kNothing * expected_ms(cheapest)) {
-        --cheapest;
-    }
-    return cheapest;
+    const double bearable_ms = kNothing * expected_ms(cheapest);
+    while (cheapest > 0 && expected_ms(cheapest - 1) < bearable_ms) --cheapest;
+    const bool has_more = step_ < cheapest && expected_ms(step_) < bearable_ms;
+    return has_more ? step_ : cheapest;
 }
 
 }  // namespace inktrace::viewer

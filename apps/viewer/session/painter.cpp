@@ -121,8 +121,7 @@ void Painter::quick(const PaintRequest& request) {
     options.cancel = &ending_;
     auto picture = std::make_shared<const Picture>(request.renderer->render(settings, options));
     const double ms = ms_since(start);
-    pace_.frame_took(scale, ms);
-    guess_cost(request, ms / (scale * scale * megapixels(*picture)));
+    const double ms_per_megapixel = ms / (scale * scale * megapixels(*picture));
     shown_exactly_ = scale == 1.0 && settings.changed() == request.settings.changed();
     finish({.picture = std::move(picture),
             .settings = request.settings,
@@ -130,6 +129,8 @@ void Painter::quick(const PaintRequest& request) {
             .scale = scale,
             .frame_ms = ms,
             .latency_ms = ms_since(request.asked)});
+    pace_.frame_took(scale, ms);
+    guess_cost(request, ms_per_megapixel);
 }
 
 /// Until a picture in full tells.
