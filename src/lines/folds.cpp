@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdint>
 #include <iterator>
+#include <limits>
 #include <numeric>
 #include <optional>
 #include <tuple>
@@ -139,7 +140,6 @@ class FoldMender {
     }
 
     void find_loose_ends() {
-        attached_.assign(lines_.size(), 0);
         for (std::size_t n = 0; n < incidences_.size(); ++n) {
             const bool goes_on =
                 (n > 0 && incidences_[n - 1].key == incidences_[n].key) ||
@@ -149,7 +149,7 @@ class FoldMender {
             const Vec2f point{std::get<1>(key), std::get<0>(key)};
             const std::uint32_t near = line_near(point, pieces_[fold]);
             if (near != kNone) {
-                attached_[root(fold)] = 1;
+                hangs_.push_back({fold, near, at_b});
                 tails_.push_back({fold, at_b});
                 const bool shared = point == lines_[near].a || point == lines_[near].b;
                 if (!shared && (!at_b || lines_[fold].spans_cell)) stubs_.push_back(fold);
@@ -157,6 +157,57 @@ class FoldMender {
             }
             ends_.push_back({point, unit(point - back_from(fold, at_b)), fold, at_b});
         }
+        pass_on();
+    }
+
+    /// What hangs on another fold, a step from that one's end, goes on as that one does: it hangs
+    /// on what that hangs on, or both are one.
+    void pass_on() {
+        constexpr std::uint32_t kOnNothing = kNone - 1;
+        std::vector<std::uint32_t> lines_at(2 * lines_.size(), kNone);
+        for (const Hang& hang : hangs_) lines_at[2 * hang.fold + (hang.at_b ? 1 : 0)] = hang.line;
+        for (const LooseEnd& end : ends_) lines_at[2 * end.fold + (end.at_b ? 1 : 0)] = kOnNothing;
+        for (Hang& hang : hangs_) {
+            if (!is_fold(hang.line)) continue;
+            const Vec2f from = hang.at_b ? lines_[hang.fold].b : lines_[hang.fold].a;
+            NearEnd near = end_near(hang.line, false, from);
+            const NearEnd other = end_near(hang.line, true, from);
+            if (other.away < near.away) near = other;
+            if (near.away > 2.0F * spacing_ || near.end / 2 == hang.fold) continue;
+            const std::uint32_t line = lines_at[near.end];
+            if (line == kNone) continue;
+            if (line == kOnNothing || pieces_[line] == pieces_[hang.fold]) {
+                followers_.push_back(hang);
+            } else {
+                hang.line = line;
+            }
+        }
+    }
+
+    /// An end of a piece, and how far it is away along the piece. End 2 k is a of fold k, 2 k + 1
+    /// is b.
+    struct NearEnd {
+        std::uint32_t end = kNone;
+        float away = std::numeric_limits<float>::infinity();
+    };
+
+    /// That which a fold comes to soon, from a point beside it on, towards one of its ends.
+    NearEnd end_near(std::uint32_t fold, bool at_b, Vec2f from) const {
+        constexpr int kMostSteps = 8;
+        Vec2f at = nearest_on(lines_[fold], from);
+        float away = 0.0F;
+        for (int step = 0; step < kMostSteps; ++step) {
+            const Vec2f to = at_b ? lines_[fold].b : lines_[fold].a;
+            away += length(to - at);
+            const auto meeting = meeting_at(to);
+            if (meeting.size() == 1) return {2 * fold + (at_b ? 1 : 0), away};
+            if (meeting.size() != 2) break;
+            const Incidence& next = meeting[meeting[0].segment == fold ? 1 : 0];
+            fold = next.segment;
+            at_b = !next.at_b;
+            at = to;
+        }
+        return {};
     }
 
     /// A point on the line some pixels before its end.
@@ -382,14 +433,9 @@ class FoldMender {
             if (fold && meets_end(end)) {
                 unite(end.fold, end.reached);
             } else {
-                attached_[root(end.fold)] = 1;
+                hangs_.push_back({end.fold, end.reached, end.at_b});
             }
         }
-        std::vector<std::uint8_t> attached(lines_.size());
-        for (std::uint32_t k = 0; k < lines_.size(); ++k) {
-            if (attached_[k] != 0) attached[root(k)] = 1;
-        }
-        attached_ = std::move(attached);
     }
 
     void bridge(const LooseEnd& end) {
@@ -431,49 +477,104 @@ class FoldMender {
 
     // Crumbs
 
+    /// What is known of a group, at its root.
+    struct Group {
+        float length = 0.0F;
+        float depth = -1.0F;    ///< less than zero: not measured
+        bool loose = false;     ///< has an end that ends on nothing before bridges were built,
+        bool free = false;      ///< or still does
+        bool attached = false;  ///< ends on a line
+        bool stub = false;      ///< ends on one whose end it does not share
+        bool crumb = false;
+
+        friend Group operator+(const Group& a, const Group& b) {
+            return {a.length + b.length, std::max(a.depth, b.depth), a.loose || b.loose,
+                    a.free || b.free,    a.attached || b.attached,   a.stub || b.stub,
+                    a.crumb || b.crumb};
+        }
+    };
+
     void find_crumbs() {
-        std::vector<float> lengths(lines_.size());
+        std::vector<Group> groups(lines_.size());
         for (const std::uint32_t k : folds_) {
-            lengths[root(k)] += length(lines_[k].b - lines_[k].a);
+            groups[root(k)].length += length(lines_[k].b - lines_[k].a);
         }
         for (std::size_t n = 0; n < owners_.size(); ++n) {
             const Segment& bridge = repairs_.bridges[n];
-            lengths[root(owners_[n])] += length(bridge.b - bridge.a);
+            groups[root(owners_[n])].length += length(bridge.b - bridge.a);
         }
-        std::vector<std::uint8_t> loose(lines_.size());
-        std::vector<std::uint8_t> ends_freely(lines_.size());
         for (const LooseEnd& end : ends_) {
-            loose[root(end.fold)] = 1;
-            if (end.reached == kNone) ends_freely[root(end.fold)] = 1;
+            groups[root(end.fold)].loose = true;
+            if (end.reached == kNone) groups[root(end.fold)].free = true;
         }
-        std::vector<std::uint8_t> stub(lines_.size());
-        for (const std::uint32_t k : stubs_) stub[root(k)] = 1;
-        const auto is_short = [&](std::uint32_t k) {
-            const std::uint32_t group = root(k);
-            return loose[group] != 0 && lengths[group] < settings_.longest_crumb * width_;
-        };
-        const std::vector<float> depths = depths_of(is_short);
-        const auto is_crumb = [&](std::uint32_t k) {
-            const std::uint32_t group = root(k);
-            const bool attached = attached_[group] != 0;
-            const float most = attached ? settings_.stub_area : settings_.crumb_area;
-            const float least = ends_freely[group] != 0                 ? settings_.shortest
-                                : loose[group] != 0 || stub[group] != 0 ? settings_.shortest_stub
-                                                                        : 0.0F;
-            return lengths[group] < least * width_ ||
-                   (is_short(k) && lengths[group] * depths[group] < most * width_ * width_);
-        };
+        for (const std::uint32_t k : stubs_) groups[root(k)].stub = true;
+        unite_followers(groups);
+        while (judge(groups)) {
+        }
         for (const std::uint32_t k : folds_) {
-            if (is_crumb(k)) repairs_.crumbs.push_back(k);
+            if (groups[root(k)].crumb) repairs_.crumbs.push_back(k);
         }
         std::size_t kept = 0;
         for (std::size_t n = 0; n < owners_.size(); ++n) {
-            if (is_crumb(owners_[n])) continue;
+            if (groups[root(owners_[n])].crumb) continue;
             repairs_.bridges[kept] = repairs_.bridges[n];
             owners_[kept++] = owners_[n];
         }
         repairs_.bridges.resize(kept);
         owners_.resize(kept);
+    }
+
+    /// One line in two pieces, neither of which is too shallow to count.
+    void unite_followers(std::vector<Group>& groups) {
+        std::vector<std::uint8_t> asked(lines_.size());
+        for (const Hang& hang : followers_) asked[root(hang.fold)] = asked[root(hang.line)] = 1;
+        measure_depths(groups, [&](std::uint32_t group) { return asked[group] != 0; });
+        const auto counts = [&](const Group& group) {
+            return group.length * group.depth >= settings_.stub_area * width_ * width_;
+        };
+        std::vector<Hang> united;
+        std::ranges::copy_if(followers_, std::back_inserter(united), [&](const Hang& hang) {
+            return counts(groups[root(hang.fold)]) && counts(groups[root(hang.line)]);
+        });
+        for (const auto& [fold, line, at_b] : united) {
+            const std::uint32_t a = root(fold);
+            const std::uint32_t b = root(line);
+            if (a == b) continue;
+            unite(a, b);
+            groups[root(a)] = groups[a] + groups[b];
+        }
+    }
+
+    /// Finds crumbs among groups that are none so far. What hung on a crumb ends freely, so that
+    /// there may be more: false if no group became one.
+    bool judge(std::vector<Group>& groups) {
+        for (Group& group : groups) group.attached = false;
+        for (const auto& [fold, line, at_b] : hangs_) {
+            Group& group = groups[root(fold)];
+            if (root(line) == root(fold)) continue;
+            if (is_fold(line) && groups[root(line)].crumb) {
+                group.loose = group.free = true;
+            } else {
+                group.attached = true;
+            }
+        }
+        const auto is_short = [&](const Group& group) {
+            return group.loose && group.length < settings_.longest_crumb * width_;
+        };
+        measure_depths(groups, [&](std::uint32_t group) { return is_short(groups[group]); });
+        bool any = false;
+        for (const std::uint32_t k : folds_) {
+            Group& group = groups[root(k)];
+            if (group.crumb) continue;
+            const float most = group.attached ? settings_.stub_area : settings_.crumb_area;
+            const float least = group.free                  ? settings_.shortest
+                                : group.loose || group.stub ? settings_.shortest_stub
+                                                            : 0.0F;
+            group.crumb = group.length < least * width_ ||
+                          (is_short(group) && group.length * group.depth < most * width_ * width_);
+            any |= group.crumb;
+        }
+        return any;
     }
 
     void drop_doubles() {
@@ -491,12 +592,14 @@ class FoldMender {
                               .drop(tails_, next_of, repairs_.crumbs, settings_.shadow * width_);
     }
 
-    /// The greatest depth of each group that is asked for, in pixels.
+    /// The greatest depth of each group that is asked for, in pixels, unless it is known.
     template <class Ask>
-    std::vector<float> depths_of(Ask asked) {
-        std::vector<float> most(lines_.size());
+    void measure_depths(std::vector<Group>& groups, Ask asked) {
         std::vector<std::uint32_t> measured;
-        std::ranges::copy_if(folds_, std::back_inserter(measured), asked);
+        std::ranges::copy_if(folds_, std::back_inserter(measured), [&](std::uint32_t k) {
+            return groups[root(k)].depth < 0.0F && asked(root(k));
+        });
+        if (measured.empty()) return;
         std::vector<float> depths(lines_.size());
         for_each_square(
             measured, [&](std::uint32_t k) { return (lines_[k].a + lines_[k].b) * 0.5F; },
@@ -504,13 +607,15 @@ class FoldMender {
                 measure_depths(group, worker, depths);
             });
         for (const std::uint32_t k : measured) {
-            float& depth = most[root(k)];
+            float& depth = groups[root(k)].depth;
             depth = std::max(depth, depths[k]);
         }
-        return most;
+        for (const std::uint32_t k : measured) {
+            if (groups[root(k)].depth < 0.0F) groups[root(k)].depth = kBottomless;
+        }
     }
 
-    static constexpr float kBottomless = 1e9F;  // another geometry
+    static constexpr float kBottomless = 1e9F;  // nothing but another geometry
 
     void measure_depths(std::span<const std::uint32_t> folds, std::size_t worker,
                         std::vector<float>& depths) {
@@ -530,7 +635,8 @@ class FoldMender {
             const float pixel =
                 length_between(points[2 * n], points[2 * n + 1], a) / (0.5F * spacing_);
             const bool one = a.id == b.id;
-            depths[folds[n]] = one ? depth_between(a, b) / pixel : kBottomless;
+            // Beside an outline, what is seen there is that outline's far side.
+            depths[folds[n]] = one ? depth_between(a, b) / pixel : -1.0F;
         }
     }
 
@@ -559,9 +665,14 @@ class FoldMender {
     std::vector<Scratch> scratch_;                ///< of each worker
     std::vector<std::uint32_t> folds_;            ///< the self-occlusions among the lines
     mutable std::vector<std::uint32_t> parents_;  ///< paths get shorter as they are walked
-    std::vector<std::uint32_t> pieces_;   ///< of each line: its group before any bridge was built
-    std::vector<Incidence> incidences_;   ///< of folds at their ends, by place
-    std::vector<std::uint8_t> attached_;  ///< a group: it meets another line
+    std::vector<std::uint32_t> pieces_;  ///< of each line: its group before any bridge was built
+    std::vector<Incidence> incidences_;  ///< of folds at their ends, by place
+    struct Hang {
+        std::uint32_t fold, line;
+        bool at_b;
+    };
+    std::vector<Hang> hangs_;      ///< folds that end on a line
+    std::vector<Hang> followers_;  ///< those of them that go on as it does
     std::optional<SegmentSquares> squares_;
     std::vector<LooseEnd> ends_;
     /// Folds that end on a cell's side, where nothing goes on, near another line.

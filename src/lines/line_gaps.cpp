@@ -2,19 +2,20 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <tuple>
 #include <utility>
 
 #include "lines/bridges.h"
+#include "lines/end_table.h"
 
 namespace ink {
 
 namespace {
 
 using plane::dot;
+using plane::EndTable;
 using plane::length;
 using plane::nearest_on;
 using plane::unit;
@@ -25,43 +26,6 @@ struct End {
     std::uint32_t segment;
     bool at_b;
     Vec2f way{};  ///< in which the line would go on
-};
-
-/// Ends of segments by their place, bit for bit.
-class EndTable {
-  public:
-    /// For up to so many ends.
-    explicit EndTable(std::size_t most)
-        : slots_(std::bit_ceil(2 * most + 2)), mask_(slots_.size() - 1) {}
-
-    struct Meeting {
-        std::uint32_t count = 0;
-        std::array<std::uint32_t, 2> ends{};  ///< of the first two
-    };
-    void add(Vec2f point, std::uint32_t end) {
-        Slot& slot = slots_[find(point)];
-        slot.point = point;
-        if (slot.meeting.count < 2) slot.meeting.ends.at(slot.meeting.count) = end;
-        ++slot.meeting.count;
-    }
-    const Meeting& at(Vec2f point) const { return slots_[find(point)].meeting; }
-
-  private:
-    struct Slot {
-        Vec2f point;
-        Meeting meeting;
-    };
-    std::size_t find(Vec2f point) const {
-        const auto x = static_cast<std::uint64_t>(std::bit_cast<std::uint32_t>(point.x));
-        const auto y = static_cast<std::uint64_t>(std::bit_cast<std::uint32_t>(point.y));
-        const std::uint64_t mixed = (x << 32U | y) * 0x9E3779B97F4A7C15U;
-        std::size_t k = static_cast<std::size_t>(mixed >> 32U) & mask_;
-        while (slots_[k].meeting.count > 0 && slots_[k].point != point) k = (k + 1) & mask_;
-        return k;
-    }
-
-    std::vector<Slot> slots_;
-    std::size_t mask_;
 };
 
 float cross(Vec2f a, Vec2f b) { return a.x * b.y - a.y * b.x; }

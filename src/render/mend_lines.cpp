@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "base/parallel.h"
+#include "lines/fold_joints.h"
 #include "lines/folds.h"
 #include "lines/line_gaps.h"
 #include "lines/tones.h"
@@ -32,6 +33,25 @@ void repair(const Edges& edges, const FoldRepairs& repairs, std::span<const Segm
     for (Segment bridge : repairs.bridges) {
         Tones::double_ids(bridge);
         toned[edges.search_tile_at((bridge.a + bridge.b) * 0.5F)].push_back(bridge);
+    }
+}
+
+/// Closes what gaps are left, and eases the joints.
+void join(std::vector<Segment>& lines, float spacing, float width, FoldRepairs& repairs) {
+    const std::size_t first_joining = lines.size();
+    lines.insert(lines.end(), repairs.bridges.begin(), repairs.bridges.end());
+    const std::vector<Segment> pieces = close_gaps(lines, repairs.crumbs, spacing, width);
+    lines.insert(lines.end(), pieces.begin(), pieces.end());
+    const FoldJoints joints = ease_joints(lines, first_joining, repairs.crumbs, spacing, width);
+    std::vector<bool> eased(lines.size());
+    for (const std::size_t k : joints.dropped) {
+        eased[k] = true;
+        if (k < first_joining) repairs.crumbs.push_back(k);
+    }
+    std::ranges::sort(repairs.crumbs);
+    repairs.bridges = joints.curves;
+    for (std::size_t k = first_joining; k < lines.size(); ++k) {
+        if (!eased[k]) repairs.bridges.push_back(lines[k]);
     }
 }
 
@@ -78,10 +98,7 @@ void mend(const Edges& edges, std::vector<std::unique_ptr<LineFinder>>& finders,
                    [&](std::size_t count, const auto& body) {
                        parallel_for(count, static_cast<int>(workers.size()), body);
                    });
-    lines.insert(lines.end(), repairs.bridges.begin(), repairs.bridges.end());
-    const std::vector<Segment> pieces =
-        close_gaps(lines, repairs.crumbs, 1.0F / static_cast<float>(edges.q), width);
-    repairs.bridges.insert(repairs.bridges.end(), pieces.begin(), pieces.end());
+    join(lines, 1.0F / static_cast<float>(edges.q), width, repairs);
     if (edges.tones) repair(edges, repairs, lines, toned);
     std::vector<bool> changed(found.size());
     // Last first, so that the places of the others stay what they are.

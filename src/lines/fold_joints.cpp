@@ -1,0 +1,282 @@
+#include "lines/fold_joints.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+#include <optional>
+#include <tuple>
+#include <utility>
+
+#include "lines/bridges.h"
+#include "lines/end_table.h"
+
+namespace ink {
+
+namespace {
+
+using plane::dot;
+using plane::EndTable;
+using plane::length;
+using plane::nearest_on;
+using plane::unit;
+
+constexpr std::uint32_t kNone = 0xFFFFFFFFU;
+
+float cosine(float degrees) { return std::cos(degrees * std::numbers::pi_v<float> / 180.0F); }
+
+// The end of segment k at its point a is number 2 k, that at b 2 k + 1.
+
+class JointEaser {
+  public:
+    JointEaser(std::span<const Segment> lines, std::size_t first_joining,
+               std::span<const std::size_t> gone, float spacing, float width,
+               const JointSettings& settings)
+        : lines_(lines),
+          first_joining_(first_joining),
+          gone_(lines.size()),
+          spacing_(spacing),
+          width_(width),
+          settings_(settings),
+          table_(count_ends(lines)) {
+        for (const std::size_t k : gone) gone_[k] = 1;
+    }
+
+    FoldJoints run() {
+        for_each_end([&](std::uint32_t end) { table_.add(point(end), end); });
+        drop_hairs();
+        find_joints();
+        find_overlaps();
+        std::ranges::sort(joints_, {}, [this](const Joint& joint) {
+            const Vec2f p = point(joint.first);
+            return std::tuple(joint.straight, p.y, p.x);
+        });
+        std::vector<std::uint8_t> taken(lines_.size());
+        for (const Joint& joint : joints_) ease(joint, taken);
+        for (std::size_t k = 0; k < lines_.size(); ++k) {
+            if (taken[k] != 0) found_.dropped.push_back(k);
+        }
+        std::ranges::sort(found_.dropped);
+        return std::move(found_);
+    }
+
+  private:
+    /// Two ends at which a line goes on.
+    struct Joint {
+        float straight;  ///< cosine of the turn; -1 of two that run past each other
+        std::uint32_t first, second;
+        float overlap;  ///< by how much, pixels
+    };
+    /// A way along a line, from one of its ends on.
+    struct Walk {
+        std::vector<Vec2f> points;
+        std::vector<std::uint32_t> ends;  ///< of each segment that is walked along, the first
+        float length = 0.0F;
+        Vec2f last() const { return points.back(); }
+    };
+
+    static std::size_t count_ends(std::span<const Segment> lines) {
+        return 2 * static_cast<std::size_t>(std::ranges::count_if(lines, is_fold));
+    }
+    static bool is_fold(const Segment& line) { return line.type == LineType::self_occlusion; }
+    Vec2f point(std::uint32_t end) const {
+        return end % 2 == 0 ? lines_[end / 2].a : lines_[end / 2].b;
+    }
+
+    template <class Visit>
+    void for_each_end(Visit visit) const {
+        for (std::uint32_t k = 0; k < lines_.size(); ++k) {
+            if (gone_[k] != 0 || !is_fold(lines_[k])) continue;
+            visit(2 * k);
+            visit(2 * k + 1);
+        }
+    }
+
+    /// The end of another segment at which the line goes on; kNone if there is not just one.
+    std::uint32_t next_to(std::uint32_t end) const {
+        const auto& [count, ends] = table_.at(point(end));
+        if (count != 2) return kNone;
+        return ends[ends[0] == end ? 1 : 0];
+    }
+
+    /// Away from an end, along its segment and on, for `far` pixels or until the line ends.
+    Walk walk(std::uint32_t end, float far) const {
+        constexpr std::size_t kMost = 256;
+        Walk walk;
+        walk.points.push_back(point(end));
+        while (end != kNone && walk.length < far && walk.ends.size() < kMost) {
+            walk.ends.push_back(end);
+            walk.points.push_back(point(end ^ 1U));
+            walk.length += length(walk.points.back() - walk.points[walk.points.size() - 2]);
+            end = next_to(end ^ 1U);
+        }
+        return walk;
+    }
+
+    /// In which a line goes that is walked along.
+    static Vec2f direction(const Walk& walk) { return unit(walk.last() - walk.points.front()); }
+
+    /// Where one line was joined to another near its end, what is left of that end sticks out.
+    void drop_hairs() {
+        for_each_end([&](std::uint32_t end) {
+            if (table_.at(point(end)).count != 1) return;
+            const Walk hair = walk(end, settings_.hair * width_);
+            if (hair.length < settings_.hair * width_ && table_.at(hair.last()).count == 3) {
+                for (const std::uint32_t e : hair.ends) found_.dropped.push_back(e / 2);
+            }
+        });
+        if (found_.dropped.empty()) return;
+        for (const std::size_t k : found_.dropped) gone_[k] = 1;
+        table_ = EndTable(count_ends(lines_));
+        for_each_end([&](std::uint32_t end) { table_.add(point(end), end); });
+    }
+
+    /// Where a piece that joins others turns.
+    void find_joints() {
+        const float sharp = cosine(settings_.least_turn);
+        for_each_end([&](std::uint32_t end) {
+            const std::uint32_t other = next_to(end);
+            if (other == kNone || other < end) return;
+            if (std::max(end, other) / 2 < first_joining_) return;
+            const float far = 1.5F * spacing_;
+            const float straight = -dot(direction(walk(end, far)), direction(walk(other, far)));
+            if (straight < sharp) joints_.push_back({straight, end, other, 0.0F});
+        });
+    }
+
+    struct LooseEnd {
+        std::uint32_t end;
+        Vec2f point, way;  ///< in which the line would go on
+    };
+
+    /// Ends of two lines that run past each other, the nearest first.
+    void find_overlaps() {
+        std::vector<LooseEnd> loose;
+        for_each_end([&](std::uint32_t end) {
+            if (table_.at(point(end)).count != 1) return;
+            const Walk back = walk(end, 3.0F * spacing_);
+            loose.push_back({end, point(end), direction(back) * -1.0F});
+        });
+        std::ranges::sort(loose, {}, [](const LooseEnd& e) {
+            return std::tuple(e.point.y, e.point.x, e.way.y, e.way.x);
+        });
+        std::vector<std::tuple<float, std::size_t, std::size_t, float>> pairs;
+        const float most = (settings_.aside + settings_.overlap) * width_;
+        for (std::size_t k = 0; k < loose.size(); ++k) {
+            for (std::size_t n = k + 1; n < loose.size(); ++n) {
+                if (loose[n].point.y - loose[k].point.y > most) break;
+                if (const auto overlap = overlap_of(loose[k], loose[n])) {
+                    pairs.emplace_back(length(loose[n].point - loose[k].point), k, n, *overlap);
+                }
+            }
+        }
+        std::ranges::sort(pairs);
+        std::vector<bool> paired(loose.size());
+        for (const auto& [apart, k, n, overlap] : pairs) {
+            if (paired[k] || paired[n] || ends_on_a_line(loose[k]) || ends_on_a_line(loose[n])) {
+                continue;
+            }
+            paired[k] = paired[n] = true;
+            joints_.push_back({-1.0F, loose[k].end, loose[n].end, std::max(overlap, 0.0F)});
+        }
+    }
+
+    /// By how many pixels two ends of one line run past each other, less than zero where they do
+    /// not; nothing if they are none.
+    std::optional<float> overlap_of(const LooseEnd& a, const LooseEnd& b) const {
+        const Segment& s = lines_[a.end / 2];
+        const Segment& t = lines_[b.end / 2];
+        const bool a_front = s.left_in_front == (a.end % 2 != 0);
+        const bool b_front = t.left_in_front == (b.end % 2 != 0);
+        if (s.owner != t.owner || a_front == b_front || a.end / 2 == b.end / 2) return {};
+        if (-dot(a.way, b.way) < cosine(settings_.most_turned)) return {};
+        const Vec2f way = unit(a.way - b.way);
+        const Vec2f apart = b.point - a.point;
+        const float ahead = dot(apart, way);
+        const float aside = std::abs(dot(apart, plane::left_of(way)));
+        if (aside > settings_.aside * width_ || ahead > settings_.gap * width_ ||
+            -ahead > settings_.overlap * width_) {
+            return {};
+        }
+        return -ahead;
+    }
+
+    bool ends_on_a_line(const LooseEnd& loose) const {
+        const Walk own = walk(loose.end, 3.0F * spacing_);
+        const float near = 0.75F * spacing_;
+        for (std::uint32_t k = 0; k < lines_.size(); ++k) {
+            const Segment& line = lines_[k];
+            if (gone_[k] != 0 || std::min(line.a.y, line.b.y) > loose.point.y + near ||
+                std::max(line.a.y, line.b.y) < loose.point.y - near ||
+                length(nearest_on(line, loose.point) - loose.point) > near) {
+                continue;
+            }
+            if (std::ranges::none_of(own.ends, [&](std::uint32_t e) { return e / 2 == k; })) {
+                return true;
+            }
+        }
+        return false;
+    }
+
+    /// Lets a curve take the place of the line on both sides of a joint.
+    void ease(const Joint& joint, std::vector<std::uint8_t>& taken) {
+        const float reach = settings_.reach * width_ + joint.overlap;
+        const Walk before = walk(joint.first, reach);
+        const Walk after = walk(joint.second, reach);
+        if (std::min(before.length, after.length) < 0.5F * reach) return;
+        for (const Walk* side : {&before, &after}) {
+            for (const std::uint32_t end : side->ends) {
+                if (taken[end / 2] != 0) return;
+            }
+        }
+        const Vec2f from = before.last();
+        const Vec2f to = after.last();
+        const Vec2f way_from = way_at_end_of(before);
+        const Vec2f way_to = way_at_end_of(after);
+        constexpr float kAhead = 0.6F;
+        const Vec2f chord = unit(to - from);
+        if (-dot(way_from, way_to) < cosine(settings_.most_turned) ||
+            dot(way_from, chord) < kAhead || dot(way_to, chord) > -kAhead) {
+            return;
+        }
+        for (const Walk* side : {&before, &after}) {
+            for (const std::uint32_t end : side->ends) taken[end / 2] = 1;
+        }
+        const std::uint32_t model = before.ends.back();
+        Vec2f at = from;
+        for (const Vec2f next : plane::curve_between(from, way_from, to, way_to, spacing_)) {
+            const std::vector<Vec2f> cut = plane::cut_by_cells(at, next, spacing_);
+            for (std::size_t n = 1; n < cut.size(); ++n) {
+                found_.curves.push_back(
+                    plane::piece_like(lines_[model / 2], model % 2 != 0, cut[n - 1], cut[n]));
+            }
+            at = next;
+        }
+    }
+
+    /// Back towards where a walk began, as the line that goes on past its end points.
+    Vec2f way_at_end_of(const Walk& walked) const {
+        const std::uint32_t next = next_to(walked.ends.back() ^ 1U);
+        if (next != kNone) return direction(walk(next, 3.0F * spacing_)) * -1.0F;
+        return unit(walked.points[walked.points.size() / 2] - walked.last());
+    }
+
+    std::span<const Segment> lines_;
+    std::size_t first_joining_;
+    std::vector<std::uint8_t> gone_;
+    float spacing_, width_;
+    const JointSettings& settings_;
+    EndTable table_;
+    std::vector<Joint> joints_;
+    FoldJoints found_;
+};
+
+}  // namespace
+
+FoldJoints ease_joints(std::span<const Segment> lines, std::size_t first_joining,
+                       std::span<const std::size_t> gone, float spacing, float width,
+                       const JointSettings& settings) {
+    return JointEaser(lines, first_joining, gone, spacing, width, settings).run();
+}
+
+}  // namespace ink
