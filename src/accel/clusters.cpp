@@ -276,7 +276,8 @@ GlyphLanes moved(const GlyphLanes& glyphs, const Motion& motion) {
     return out;
 }
 
-Clusters::Clusters(const Scene& scene) : unit_shapes(scene.objects().size()) {
+Clusters::Clusters(const Scene& scene)
+    : unit_shapes(scene.objects().size()), corner_normals(scene.objects().size()) {
     std::vector<Bounds3f> boxes;
     for (std::uint32_t i = 0; i < scene.objects().size(); ++i) {
         const Shape& shape = scene.objects()[i].shape;
@@ -286,6 +287,7 @@ Clusters::Clusters(const Scene& scene) : unit_shapes(scene.objects().size()) {
             append_copies(SphereParts{*balls}, *this, boxes);
         } else if (const auto* mesh = std::get_if<Mesh>(&shape)) {
             append(TriangleParts{*mesh}, i, triangles, *this, boxes);
+            if (!mesh->corner_normals.empty()) corner_normals[i] = mesh->corner_normals[0].data();
         } else if (const auto* hexahedra = std::get_if<Hexahedra>(&shape)) {
             append(SolidParts{*hexahedra}, i, solids, *this, boxes);
         } else if (const auto* placed = std::get_if<Glyphs>(&shape)) {

@@ -73,6 +73,9 @@ struct Clusters {
     std::vector<GlyphLanes> glyphs;
     std::vector<ClusterCopy> copies;
     std::vector<UnitShape> unit_shapes;  ///< of objects that are glyphs; an entry an object
+    /// Of objects that are meshes with normals at corners, three a triangle; else null. The
+    /// scene's.
+    std::vector<const std::uint32_t*> corner_normals;
 
     /// Boxes of the clusters; then boxes whose lanes bound a packet of the level below each, up to
     /// a single packet.

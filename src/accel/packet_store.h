@@ -39,7 +39,9 @@ class PacketStore {
         const std::uint32_t place = take_place();
         owners_[place] = {cluster, area_};
         if (!place_of_.empty()) place_of_[cluster] = place;
-        prepare(basis_, clusters_, clusters_.clusters[cluster], packets_[place]);
+        if (wants_shades_) shades_.resize(packets_.size());
+        prepare(basis_, clusters_, clusters_.clusters[cluster], packets_[place],
+                wants_shades_ ? &shades_[place] : nullptr);
         if (wants_sides_ && packets_[place].kind == ClusterKind::triangles) {
             sides_.resize(packets_.size());
             find_sides(packets_[place], sides_[place]);
@@ -49,9 +51,16 @@ class PacketStore {
 
     const ScreenPacket* packets() const { return packets_.data(); }
 
+    void prefetch(std::uint32_t cluster) const {
+        if (!has(cluster)) ink::prefetch(clusters_, cluster, wants_shades_);
+    }
+
     /// To be called before the first `get`: the sides of triangles are found as well.
     void want_sides() { wants_sides_ = true; }
     const PacketSides* sides() const { return sides_.data(); }
+    /// Likewise what shading needs of them.
+    void want_shades() { wants_shades_ = true; }
+    const PacketShades* shades() const { return shades_.data(); }
 
   private:
     static constexpr std::uint32_t kNone = 0xFFFFFFFFU;
@@ -91,7 +100,9 @@ class PacketStore {
     const Basis& basis_;
     std::vector<ScreenPacket> packets_;
     bool wants_sides_ = false;
-    std::vector<PacketSides> sides_;       ///< of each packet of triangles
+    std::vector<PacketSides> sides_;  ///< of each packet of triangles
+    bool wants_shades_ = false;
+    std::vector<PacketShades> shades_;     ///< likewise
     std::vector<Owner> owners_;            ///< a packet
     std::vector<std::uint32_t> place_of_;  ///< a cluster: its packet, or kNone; empty: none is kept
     std::uint32_t area_ = 0;

@@ -1,5 +1,6 @@
 #include "accel/screen_packets.h"
 
+#include <algorithm>
 #include <limits>
 
 // Everything between the two namespace macros is built once for each instruction set.
@@ -94,18 +95,49 @@ void prepare_copy(const Basis& basis, const Clusters& clusters, const Cluster& c
     prepare(basis, moved(lanes, clusters.copies[cluster.copy].motion), packet);
 }
 
+/// Normals at the corners of a cluster's triangles; unused lanes repeat the last one.
+void find_corner_normals(const std::uint32_t* packed, const Cluster& cluster,
+                         const ScreenPacket& packet, CornerNormals& normals) {
+    for (int lane = 0; lane < kLanes; ++lane) {
+        const std::uint32_t primitive = packet.primitive[std::min(lane, cluster.count - 1)];
+        const std::uint32_t* own = packed + std::size_t{3} * primitive;
+        normals.a[lane] = own[0];
+        normals.b[lane] = own[1];
+        normals.c[lane] = own[2];
+    }
+}
+
+void prepare_triangles(const Basis& basis, const Clusters& clusters, const Cluster& cluster,
+                       ScreenPacket& packet, PacketShades* shades) {
+    const TriangleLanes& triangles = clusters.triangles[cluster.packet];
+    ScreenCorners corners;
+    prepare(basis, triangles, packet, corners);
+    if (shades == nullptr) return;
+    const std::uint32_t* packed = clusters.corner_normals[cluster.object];
+    CornerNormals normals;
+    if (packed != nullptr) find_corner_normals(packed, cluster, packet, normals);
+    prepare_shades(basis, triangles, corners, packed != nullptr ? &normals : nullptr, packet,
+                   *shades);
+}
+
 }  // namespace
 
 void prepare(const Basis& basis, const Clusters& clusters, const Cluster& cluster,
-             ScreenPacket& packet) {
+             ScreenPacket& packet, PacketShades* shades) {
     packet.object = cluster.object;
     packet.kind = cluster.kind;
+    const std::uint32_t first =
+        cluster.copy == kNoCopy ? 0 : clusters.copies[cluster.copy].first_primitive;
+    for (int lane = 0; lane < cluster.count; ++lane) {
+        packet.primitive[lane] =
+            first + clusters.order[cluster.first + static_cast<std::uint32_t>(lane)];
+    }
     switch (cluster.kind) {
         case ClusterKind::spheres:
             prepare_copy(basis, clusters, cluster, clusters.spheres[cluster.packet], packet);
             break;
         case ClusterKind::triangles:
-            prepare(basis, clusters.triangles[cluster.packet], packet);
+            prepare_triangles(basis, clusters, cluster, packet, shades);
             break;
         case ClusterKind::solids: prepare(basis, clusters.solids[cluster.packet], packet); break;
         case ClusterKind::glyphs:
@@ -114,15 +146,9 @@ void prepare(const Basis& basis, const Clusters& clusters, const Cluster& cluste
             break;
     }
     empty_unused(cluster.count, packet.bounds);
-    const std::uint32_t first =
-        cluster.copy == kNoCopy ? 0 : clusters.copies[cluster.copy].first_primitive;
-    for (int lane = 0; lane < cluster.count; ++lane) {
-        packet.primitive[lane] =
-            first + clusters.order[cluster.first + static_cast<std::uint32_t>(lane)];
-    }
 }
 
-void prefetch(const Clusters& clusters, std::uint32_t cluster) {
+void prefetch(const Clusters& clusters, std::uint32_t cluster, bool shades) {
     const auto ask = [](const auto& lanes) {
         constexpr std::size_t kLine = 64;
         const auto* bytes = reinterpret_cast<const char*>(&lanes);
@@ -131,7 +157,14 @@ void prefetch(const Clusters& clusters, std::uint32_t cluster) {
     const Cluster& own = clusters.clusters[cluster];
     switch (own.kind) {
         case ClusterKind::spheres: return ask(clusters.spheres[own.packet]);
-        case ClusterKind::triangles: return ask(clusters.triangles[own.packet]);
+        case ClusterKind::triangles:
+            if (const std::uint32_t* packed = clusters.corner_normals[own.object];
+                shades && packed != nullptr) {
+                for (std::uint32_t i = 0; i < own.count; ++i) {
+                    __builtin_prefetch(packed + std::size_t{3} * clusters.order[own.first + i]);
+                }
+            }
+            return ask(clusters.triangles[own.packet]);
         case ClusterKind::solids: return ask(clusters.solids[own.packet]);
         case ClusterKind::glyphs: return ask(clusters.glyphs[own.packet]);
     }

@@ -89,6 +89,37 @@ struct ScreenPacket {
     UnitShape shape{};  ///< of glyphs
 };
 
+/// What shading needs of a triangle, on one cache line. Its normal at q is n + right (q.x - u) +
+/// down (q.y - v), up to its length: what is linear on a surface seen in perspective is linear on
+/// the screen once it is divided by depth, which leaves the direction. Zero if it is flat.
+struct ShadeNumbers {
+    static constexpr std::size_t kNormal = 0, kRight = 3, kDown = 6, kU = 9, kV = 10;
+    static constexpr std::size_t kFacet = 11;  ///< geometric normal, unit, facing the viewer
+    static constexpr std::size_t kPrimitive = 14, kObject = 15;  ///< their bits
+    static constexpr std::size_t kCount = 16;
+};
+
+/// Those of a packet of triangles.
+struct PacketShades {
+    PacketShades() {}  // NOLINT: as ScreenPacket
+    alignas(64) std::array<std::array<float, ShadeNumbers::kCount>, kLanes> numbers;
+};
+
+/// The corners of sixteen triangles on the screen, and twice their areas: negative where the
+/// corners run round anticlockwise, as those of triangles that face the viewer do.
+struct ScreenCorners {
+    struct Corner {
+        Lanes<float> u, v, depth;
+    };
+    Corner a, b, c;
+    Lanes<float> area;
+};
+
+/// Normals at those corners, packed.
+struct CornerNormals {
+    Lanes<std::uint32_t> a, b, c;
+};
+
 /// A projection's numbers by value, so that nothing that a loop writes can change them.
 struct Basis {
     double rx, ry, rz, dx, dy, dz, fx, fy, fz;  ///< right, down, forward
@@ -102,16 +133,22 @@ struct Basis {
 /// The primitives of a packet whose object, kind and shape are set: bounds, forms and what hits
 /// need.
 void prepare(const Basis& basis, const SphereLanes& spheres, ScreenPacket& packet);
-void prepare(const Basis& basis, const TriangleLanes& triangles, ScreenPacket& packet);
+void prepare(const Basis& basis, const TriangleLanes& triangles, ScreenPacket& packet,
+             ScreenCorners& corners);
 void prepare(const Basis& basis, const SolidLanes& faces, ScreenPacket& packet);
 void prepare(const Basis& basis, const GlyphLanes& glyphs, ScreenPacket& packet);
 
-/// What the camera sees of a cluster.
-void prepare(const Basis& basis, const Clusters& clusters, const Cluster& cluster,
-             ScreenPacket& packet);
+/// What shading needs of triangles. `normals`: null if the mesh is flat.
+void prepare_shades(const Basis& basis, const TriangleLanes& triangles,
+                    const ScreenCorners& corners, const CornerNormals* normals,
+                    const ScreenPacket& packet, PacketShades& shades);
 
-/// Asks the cache for what `prepare` will read of a cluster.
-void prefetch(const Clusters& clusters, std::uint32_t cluster);
+/// What the camera sees of a cluster; `shades`: null, or what is to be told if it is of triangles.
+void prepare(const Basis& basis, const Clusters& clusters, const Cluster& cluster,
+             ScreenPacket& packet, PacketShades* shades = nullptr);
+
+/// Asks the cache for what `prepare` will read of a cluster, with `shades` or without.
+void prefetch(const Clusters& clusters, std::uint32_t cluster, bool shades);
 
 /// Screen bounds of the first `used` of sixteen boxes.
 void prepare(const Basis& basis, const BoxLanes& boxes, std::size_t used, BoundsPacket& packet);

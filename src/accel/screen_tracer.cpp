@@ -67,7 +67,7 @@ class ScreenTileTracer final : public TileTracer {
                    std::span<HitPacket> hits) override;
     void find(const BlockRaster& raster, std::span<const PointPacket> points) override {
         start(points);
-        find_fronts(lay_out(raster));
+        if (raster.packets > 0) find_fronts(lay_out(raster));
         for (std::size_t k = raster.packets; k < points.size(); ++k) find_front(fronts_[k]);
     }
     void resolve(std::size_t first, std::span<const PointPacket> points,
@@ -76,6 +76,13 @@ class ScreenTileTracer final : public TileTracer {
     void measure(std::size_t first, std::span<BorderPacket> borders) override {
         for (std::size_t k = 0; k < borders.size(); ++k) {
             ink::measure(fronts_[first + k], store_.packets(), store_.sides(), borders[k]);
+        }
+    }
+    void want_shades() override { store_.want_shades(); }
+    void see(std::size_t first, bool distances, std::span<HitPacket> hits,
+             std::span<NormalPacket> normals) override {
+        for (std::size_t k = 0; k < hits.size(); ++k) {
+            ink::see(fronts_[first + k], store_.shades(), distances, hits[k], normals[k]);
         }
     }
     void identify(std::span<const PointPacket> points, std::span<const RayPacket> rays,
@@ -184,9 +191,7 @@ void ScreenTileTracer::find_fronts(const FrontRaster& raster, std::uint32_t most
         if (!(candidates_.depth(k * kLanes) < most)) return;
         const std::size_t end = std::min((k + 1) * kLanes, candidates_.count());
         for (std::size_t i = k * kLanes; i < end; ++i) {
-            if (i + 1 < end && !store_.has(candidates_.cluster(i + 1))) {
-                prefetch(view_.clusters, candidates_.cluster(i + 1));
-            }
+            if (i + 1 < end) store_.prefetch(candidates_.cluster(i + 1));
             if (!matters(candidates_.bounds(k), static_cast<int>(i % kLanes), raster)) continue;
             const std::uint32_t packet = packet_of(i);
             ink::intersect(view_.basis, store_.packets(), packet, raster);
@@ -302,6 +307,11 @@ class ScreenFrameTracer final : public FrameTracer {
     }
 
     bool measures_borders() const override { return true; }
+    bool shades_triangles() const override {
+        return std::ranges::all_of(view_.clusters.clusters, [](const Cluster& cluster) {
+            return cluster.kind == ClusterKind::triangles;
+        });
+    }
 
     bool is_suited(const Window& part) const;
 

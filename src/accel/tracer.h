@@ -38,6 +38,11 @@ struct HitPacket {
     }
 };
 
+/// Normals that sixteen points are shaded by, unit, facing the viewer; zero where nothing was hit.
+struct NormalPacket {
+    Lanes<float> x, y, z;
+};
+
 /// One of the places where a ray crosses a surface.
 struct SurfaceHit {
     float t;       ///< distance along the ray, scene units
@@ -95,7 +100,8 @@ class TileTracer {
 
     /// The same in two steps for packets that lie on a raster, and any others that follow: `find`
     /// looks for all hits, `resolve` tells those of packets `first` and on, of which it is given
-    /// the points and rays. So hits can be made use of a few at a time, while they are in the cache.
+    /// the points and rays. So hits can be made use of a few at a time, while they are in the
+    /// cache.
     virtual void find(const BlockRaster& /*raster*/, std::span<const PointPacket> /*points*/) {}
     virtual void resolve(std::size_t /*first*/, std::span<const PointPacket> points,
                          std::span<const RayPacket> rays, std::span<HitPacket> hits) {
@@ -106,6 +112,14 @@ class TileTracer {
     /// triangles that they hit. Only if the frame `measures_borders`, and after `want_borders`.
     virtual void want_borders() {}
     virtual void measure(std::size_t /*first*/, std::span<BorderPacket> /*borders*/) {}
+
+    /// After `find`, of packets `first` and on, without rays: the hits but for barycentric
+    /// coordinates, t only if `distances`, with normals that are unit and face the viewer; and the
+    /// normals to shade them by, interpolated where a mesh has normals at its corners. Only if the
+    /// frame `shades_triangles`, and after `want_shades`.
+    virtual void want_shades() {}
+    virtual void see(std::size_t /*first*/, bool /*distances*/, std::span<HitPacket> /*hits*/,
+                     std::span<NormalPacket> /*normals*/) {}
 
     /// Finds t, object and primitive of the hits and no more. Rays may be left out unless
     /// `needs_rays`.
@@ -136,6 +150,8 @@ class FrameTracer {
     virtual std::unique_ptr<TileTracer> tile_tracer() const = 0;
     /// Whether its tile tracers can tell how far points are from the borders of triangles.
     virtual bool measures_borders() const { return false; }
+    /// Whether there is nothing but triangles, and they can tell by which normals to shade these.
+    virtual bool shades_triangles() const { return false; }
 };
 
 /// Finds the first surface along rays. Safe to use from many threads.

@@ -28,6 +28,12 @@ HWY_INLINE Corner project(const Basis& basis, const Points& points, int i) {
     return {p, rounded(hn::Mul(p.x, scale)), rounded(hn::Mul(p.y, scale))};
 }
 
+HWY_INLINE void keep(const Corner& corner, int i, ScreenCorners::Corner& to) {
+    put(corner.u, to.u, i);
+    put(corner.v, to.v, i);
+    put(corner.p.z, to.depth, i);
+}
+
 /// Edge from corner `a` to corner `b`, its inside on the left if `side` is 1, else -1.
 HWY_INLINE void lay_edge(const Corner& a, const Corner& b, Half side, int i, Lanes<float>* edge) {
     const auto swap = hn::Or(hn::Lt(b.u, a.u), hn::And(hn::Eq(b.u, a.u), hn::Lt(b.v, a.v)));
@@ -76,7 +82,8 @@ HWY_INLINE void lay_plane(const Basis& basis, const Corner& a, const Corner& b, 
     put(hn::Mul(n.y, number(basis.slope_step)), plane[7], i);
 }
 
-void lay_triangles(Basis basis, const TriangleLanes& triangles, ScreenPacket& packet) {
+void lay_triangles(Basis basis, const TriangleLanes& triangles, ScreenPacket& packet,
+                   ScreenCorners& corners) {
     FormLanes form;
     for (int i = 0; i < kLanes; i += kStep) {
         Corner a = project(basis, triangles.a, i);
@@ -90,6 +97,10 @@ void lay_triangles(Basis basis, const TriangleLanes& triangles, ScreenPacket& pa
                                     hn::Mul(apart(b.v, a.v), apart(c.u, a.u)));
         // The sign of a double survives rounding, zero does too.
         const Half rounded_area = rounded(area);
+        keep(a, i, corners.a);
+        keep(b, i, corners.b);
+        keep(c, i, corners.c);
+        put(rounded_area, corners.area, i);
         const Half side = hn::IfThenElse(hn::Lt(rounded_area, hn::Zero(kHalves)), number_f(-1.0F),
                                          number_f(1.0F));
         lay_edge(a, b, side, i, &form[0]);
@@ -173,13 +184,15 @@ HWY_EXPORT(lay_triangles);
 HWY_EXPORT(record_solids);
 HWY_EXPORT(record_triangles);
 
-void prepare(const Basis& basis, const TriangleLanes& triangles, ScreenPacket& packet) {
-    HWY_DYNAMIC_DISPATCH(lay_triangles)(basis, triangles, packet);
+void prepare(const Basis& basis, const TriangleLanes& triangles, ScreenPacket& packet,
+             ScreenCorners& corners) {
+    HWY_DYNAMIC_DISPATCH(lay_triangles)(basis, triangles, packet, corners);
     HWY_DYNAMIC_DISPATCH(record_triangles)(triangles, packet);
 }
 
 void prepare(const Basis& basis, const SolidLanes& faces, ScreenPacket& packet) {
-    HWY_DYNAMIC_DISPATCH(lay_triangles)(basis, faces.triangles, packet);
+    ScreenCorners corners;
+    HWY_DYNAMIC_DISPATCH(lay_triangles)(basis, faces.triangles, packet, corners);
     HWY_DYNAMIC_DISPATCH(record_solids)(faces.normal, packet);
 }
 

@@ -175,26 +175,39 @@ std::uint32_t LineFinder::lay_block(const Block& block) {
     return static_cast<std::uint32_t>(blocks_.size() - 1);
 }
 
+/// Whether nothing needs more of the lattice than where it hit, and one normal. Ridges need the
+/// same normals from single points.
+bool LineFinder::can_take_shades() const {
+    const Shader& shader = edges_.pipeline.shader;
+    return shader.needs_normals_only() && !shader.has_line_normals() && !edges_.tones &&
+           !specular_ && ridges_ == nullptr;
+}
+
 /// Their hits, normals and samples.
 void LineFinder::take(std::size_t first, std::size_t count) {
-    sampler_.take_hits(first, std::span(hits_).subspan(first, count));
-    for (std::size_t k = first; k < first + count; ++k) edges_.pipeline.shader.prefetch(hits_[k]);
+    const auto hits = std::span(hits_).subspan(first, count);
+    if (takes_shades_) {
+        sampler_.take_shades(first, true, hits, std::span(normals_).subspan(first, count));
+    } else {
+        sampler_.take_hits(first, hits);
+        for (const HitPacket& packet : hits) edges_.pipeline.shader.prefetch(packet);
+    }
     for (std::size_t k = first; k < first + count; ++k) {
         if (std::ranges::all_of(hits_[k].object, [](auto object) { return object == kNoObject; })) {
             continue;  // the grid is background so far
         }
         saw_anything_ = true;
-        edges_.pipeline.shader.smooth(hits_[k], normals_[k]);
+        if (!takes_shades_) edges_.pipeline.shader.smooth(hits_[k], normals_[k]);
         fill_grid(k);
     }
 }
 
 namespace {
 
-/// Positions and IDs of a packet.
-INKTRACE_MULTIVERSION
-void locate_hits(const RayPacket& rays, const HitPacket& hits, const NormalPacket& normals,
-                 std::array<Lanes<float>, 7>& __restrict values) {
+/// Positions, normals and t of a packet.
+INKTRACE_INLINE void locate_lanes(const RayPacket& rays, const HitPacket& hits,
+                                  const NormalPacket& normals,
+                                  std::array<Lanes<float>, 7>& __restrict values) {
     for (int i = 0; i < kLanes; ++i) {
         const bool hit = hits.object[i] != kNoObject;
         const float t = hit ? hits.t[i] : 0.0F;
@@ -208,6 +221,21 @@ void locate_hits(const RayPacket& rays, const HitPacket& hits, const NormalPacke
     }
 }
 
+INKTRACE_MULTIVERSION
+void locate_hits(const RayPacket& rays, const HitPacket& hits, const NormalPacket& normals,
+                 std::array<Lanes<float>, 7>& __restrict values) {
+    locate_lanes(rays, hits, normals, values);
+}
+
+/// Where rays have not been made.
+INKTRACE_MULTIVERSION
+void locate_hits(const Camera& camera, const PointPacket& points, const HitPacket& hits,
+                 const NormalPacket& normals, std::array<Lanes<float>, 7>& __restrict values) {
+    RayPacket rays;
+    camera.make_rays(points.x, points.y, rays);
+    locate_lanes(rays, hits, normals, values);
+}
+
 }  // namespace
 
 void LineFinder::fill_grid(std::size_t block) {
@@ -219,7 +247,12 @@ void LineFinder::fill_grid(std::size_t block) {
     NormalPacket separate;
     if (shader.has_line_normals()) shader.line_normals(hits_[block], separate);
     const NormalPacket& normals = shader.has_line_normals() ? separate : normals_[block];
-    locate_hits(sampler_.packets()[block], hits_[block], normals, values);
+    if (takes_shades_) {
+        locate_hits(edges_.pipeline.camera, sampler_.points()[block], hits_[block], normals,
+                    values);
+    } else {
+        locate_hits(sampler_.packets()[block], hits_[block], normals, values);
+    }
     copy_to_grid(block, ids.data(), grid_.id.data());
     const std::array<float*, 7> planes{grid_.px.data(), grid_.py.data(), grid_.pz.data(),
                                        grid_.nx.data(), grid_.ny.data(), grid_.nz.data(),
@@ -258,6 +291,10 @@ void LineFinder::keep_for_ridges(const Tile& tile) {
 void LineFinder::shade(std::size_t first, std::size_t count) {
     const Pipeline& pipeline = edges_.pipeline;
     for (std::size_t k = first; k < first + count; ++k) {
+        if (takes_shades_) {
+            seen_[k] = pipeline.shader.shade(hits_[k], normals_[k], colors_[k]) ? 1 : 0;
+            continue;
+        }
         const SurfacePacket surface{sampler_.packets()[k], sampler_.points()[k], hits_[k],
                                     normals_[k]};
         seen_[k] = pipeline.shader.shade(surface, colors_[k]) ? 1 : 0;

@@ -118,8 +118,10 @@ class LineFinder {
           direct_density_(edges.no_lines) {
         if (front && edges.pipeline.goes_on()) specular_.emplace(edges);
         if (borders_ != nullptr) sampler_.want_borders();
+        takes_shades_ = front && can_take_shades() && sampler_.want_shades();
     }
 
+    bool can_take_shades() const;
     void trace_lattice(const Tile& tile);
     void lay_blocks();
     bool lays_strips() const;
@@ -217,6 +219,7 @@ class LineFinder {
     bool faces_end_;  ///< lines between faces end where another line is in front
     RidgeSearch* ridges_;
     Sampler sampler_;
+    bool takes_shades_ = false;  ///< normals to shade by come with the hits
     Sampler pixel_sampler_;
     Locator locator_;
     SampleFunction sample_;

@@ -56,6 +56,7 @@ struct Stencils {
 
     /// One sample a pixel and no lines: its colour is the pixel.
     bool plain() const { return samples.size() == 1 && !draw_lines; }
+    bool traces_pixels() const { return plain() && !shaded && !pipeline.aovs; }
 
     const Pipeline& pipeline;
     std::vector<Vec2f> samples;       ///< a pixel's sample rays, offsets from its centre
@@ -77,12 +78,16 @@ struct Stencils {
 struct Workspace {
     explicit Workspace(const Stencils& stencils)
         : sampler(*stencils.pipeline.frame, stencils.pipeline.camera),
+          takes_shades(stencils.traces_pixels() && stencils.pipeline.shader.needs_normals_only() &&
+                       sampler.want_shades()),
           stencil_hits(stencils.points.size()),
           ridge_hits(stencils.ridge_points.size()) {}
 
     Sampler sampler;
+    bool takes_shades;  ///< normals to shade by come with the hits
     std::vector<Block> blocks, empty;
     std::vector<HitPacket> hits;             ///< of the sample rays
+    std::vector<NormalPacket> normals;       ///< if they do
     std::vector<PointPacket> sample_points;  ///< if self-occlusions or ridges are looked for
     std::vector<ColorPacket> colors;         ///< c_s
     std::vector<std::uint8_t> seen;          ///< 0: nothing but background
@@ -127,17 +132,29 @@ void trace_pixels(const Stencils& stencils, Workspace& work) {
     const Shader& shader = stencils.pipeline.shader;
     LapTimer timer;
     work.hits.resize(kRun);
+    work.normals.resize(kRun);
     work.sampler.find_blocks(work.blocks, stencils.samples[0]);
     ColorPacket colors;
     for (std::size_t first = 0; first < work.blocks.size(); first += kRun) {
         const std::size_t count = std::min(kRun, work.blocks.size() - first);
-        work.sampler.take_hits(first, std::span(work.hits).first(count));
+        const auto hits = std::span(work.hits).first(count);
+        if (work.takes_shades) {
+            work.sampler.take_shades(first, false, hits, std::span(work.normals).first(count));
+        } else {
+            work.sampler.take_hits(first, hits);
+        }
         timer.lap(work.stats.trace_ms);
-        for (std::size_t k = 0; k < count; ++k) shader.prefetch(work.hits[k]);
+        if (!work.takes_shades) {
+            for (std::size_t k = 0; k < count; ++k) shader.prefetch(work.hits[k]);
+        }
         for (std::size_t k = 0; k < count; ++k) {
             const Block block = work.blocks[first + k];
-            if (shader.shade(work.sampler.packets()[first + k], work.sampler.points()[first + k],
-                             work.hits[k], colors)) {
+            const bool seen =
+                work.takes_shades
+                    ? shader.shade(work.hits[k], work.normals[k], colors)
+                    : shader.shade(work.sampler.packets()[first + k],
+                                   work.sampler.points()[first + k], work.hits[k], colors);
+            if (seen) {
                 stencils.pipeline.film.put(block.x, block.y, colors);
             } else {
                 stencils.pipeline.film.put_background(block.x, block.y);
@@ -376,9 +393,7 @@ void render_tile(const Stencils& stencils, Workspace& work, const Tile& tile) {
     for (const Block block : work.empty) {
         stencils.pipeline.film.put_background(block.x, block.y);
     }
-    if (stencils.plain() && !stencils.shaded && !stencils.pipeline.aovs) {
-        return trace_pixels(stencils, work);
-    }
+    if (stencils.traces_pixels()) return trace_pixels(stencils, work);
     work.sums.clear();
     for (const Vec2f offset : stencils.samples) {
         trace_samples(stencils, work, offset);

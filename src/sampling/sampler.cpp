@@ -116,12 +116,16 @@ void Sampler::find_blocks(std::span<const Block> blocks, Vec2f offset) {
                              : static_cast<std::size_t>(block.columns) *
                                    static_cast<std::size_t>(block.rows);
     }
-    make_room();
+    if (!wants_shades_) make_room();
     // A few blocks find their own way faster.
     const std::ptrdiff_t few = wants_borders_ ? 0 : 4;
     const auto strips = std::ranges::find_if(blocks, &Block::is_strip);
     found_ = strips - blocks.begin() > few;
-    if (found_) tracer_->find(raster_of({blocks.begin(), strips}, offset), points());
+    if (found_) {
+        tracer_->find(raster_of({blocks.begin(), strips}, offset), points());
+    } else if (wants_shades_) {
+        tracer_->find({}, points());
+    }
 }
 
 void Sampler::want_borders() {
@@ -143,6 +147,17 @@ void Sampler::take_hits(std::size_t first, std::span<HitPacket> hits) {
         tracer_->intersect(points, rays, hits);
     }
     face_viewer(rays.data(), hits);
+}
+
+bool Sampler::want_shades() {
+    wants_shades_ = shades_triangles_;
+    if (wants_shades_) tracer_->want_shades();
+    return wants_shades_;
+}
+
+void Sampler::take_shades(std::size_t first, bool distances, std::span<HitPacket> hits,
+                          std::span<NormalPacket> normals) {
+    tracer_->see(first, distances, hits, normals);
 }
 
 /// Room for the points of a call. What was made before is not cleared again.

@@ -31,6 +31,7 @@ class Sampler {
   public:
     Sampler(const FrameTracer& frame, const Camera& camera, int per_pixel = 1)
         : tracer_(frame.tile_tracer()),
+          shades_triangles_(frame.shades_triangles()),
           camera_(camera),
           spacing_(1.0F / static_cast<float>(per_pixel)) {}
 
@@ -51,6 +52,11 @@ class Sampler {
     /// with a few blocks finds them in the nearest cache.
     void find_blocks(std::span<const Block> blocks, Vec2f offset);
     void take_hits(std::size_t first, std::span<HitPacket> hits);
+    /// Likewise without rays, with the normals to shade by: hits have no barycentric coordinates,
+    /// and t only if `distances`. From `want_shades` on, which is false if the frame cannot tell.
+    bool want_shades();
+    void take_shades(std::size_t first, bool distances, std::span<HitPacket> hits,
+                     std::span<NormalPacket> normals);
     /// Likewise, from `want_borders` on, how far their points are from the borders of the triangles
     /// that they hit; those of strips are left out. Only if the frame can tell.
     void want_borders();
@@ -98,6 +104,7 @@ class Sampler {
     void sort_by_place(std::span<const Vec2f> points, const ScreenBox& box);
 
     std::unique_ptr<TileTracer> tracer_;
+    bool shades_triangles_;
     const Camera& camera_;
     float spacing_;
     ScreenBox area_{kInfinity, kInfinity, -kInfinity, -kInfinity};
@@ -105,6 +112,7 @@ class Sampler {
     std::size_t placed_ = 0;           ///< in the last call
     std::vector<RayPacket> packets_;   ///< likewise
     bool wants_borders_ = false;
+    bool wants_shades_ = false;
     bool found_ = false;                ///< by find_blocks: hits need only be taken
     std::vector<std::uint32_t> cells_;  ///< of a raster of blocks
     std::vector<std::uint32_t> order_;

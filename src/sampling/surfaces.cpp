@@ -26,21 +26,15 @@ bool shows_front(const Mesh& mesh, const Mesh::Triangle& triangle, Vec3f normal)
     return dot(cross(b - a, c - a), normal) > 0.0F;
 }
 
-/// From a hit to the nearest open edge of its triangle.
-float rim_distance(const Mesh& mesh, const HitPacket& hits, int lane) {
+/// From a point of a triangle to its nearest open edge.
+float rim_distance(const Mesh& mesh, std::uint32_t triangle, Vec3f point) {
     float least = std::numeric_limits<float>::infinity();
-    const std::uint32_t triangle = hits.primitive[lane];
     const Mesh::Triangle& corners = mesh.triangles[triangle];
-    const std::array<float, 3> weights{1.0F - hits.u[lane] - hits.v[lane], hits.u[lane],
-                                       hits.v[lane]};
     for (std::size_t k = 0; k < 3; ++k) {
         if (!mesh.is_boundary(triangle, k)) continue;
-        // The weight of the corner across falls to zero over the triangle's height.
         const Vec3f a = mesh.vertices[corners[k]];
-        const Vec3f b = mesh.vertices[corners[(k + 1) % 3]];
-        const Vec3f c = mesh.vertices[corners[(k + 2) % 3]];
-        const float height = length(cross(b - a, c - a)) / length(b - a);
-        least = std::min(least, weights[(k + 2) % 3] * height);
+        const Vec3f edge = mesh.vertices[corners[(k + 1) % 3]] - a;
+        least = std::min(least, length(cross(edge, point - a)) / length(edge));
     }
     return least;
 }
@@ -176,7 +170,8 @@ void Surfaces::describe(const HitPacket& hits, int lane, Sample& sample) const {
         const Sphere sphere = spheres->at(hits.primitive[lane]);
         sample.ball = {sphere.centre, sphere.radius};
     } else if (const auto* mesh = std::get_if<Mesh>(&shape)) {
-        if (!mesh->edge_flags.empty()) sample.rim = rim_distance(*mesh, hits, lane);
+        if (!mesh->edge_flags.empty())
+            sample.rim = rim_distance(*mesh, hits.primitive[lane], sample.position);
         sample.object = hits.object[lane];
         sample.triangle = hits.primitive[lane];
     }

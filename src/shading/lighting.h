@@ -9,10 +9,6 @@
 
 namespace ink {
 
-struct NormalPacket {
-    Lanes<float> x, y, z;
-};
-
 struct ColorLanes {
     Lanes<float> r, g, b;
     void fill(Color color) {

@@ -119,6 +119,7 @@ void Shader::add_surface(const Object& object, const ResolvedMaterial& material,
         if (source == NormalSource::geometric) surface.line_normals = nullptr;
     }
     if (material.uniform) surface.primitive_colors = surface.vertex_colors = nullptr;
+    any_vertex_colors_ |= surface.vertex_colors != nullptr;
     any_smooth_ |= surface.corner_normals != nullptr || surface.line_normals != nullptr;
     any_line_normals_ |= surface.line_normals != surface.corner_normals;
     any_gloss_ |= material.specular > 0.0F || material.metal > 0.0F;
@@ -139,13 +140,32 @@ bool Shader::shade(const SurfacePacket& surface, ColorPacket& colors) const {
         return object != kNoObject;
     }
     ColorLanes base;
-    look_up_colors(surface.hits, object, base);
-    if (pastel_ > 0.0F) mix(base, pastel_, {1, 1, 1});
+    find_base(surface.hits, object, base);
     ColorLanes lit;
     illuminate(surface, base, lit);
     if (fog_ > 0.0F) add_fog(surface, lit);
     finish(surface.hits, lit, background_, colors);
     return true;
+}
+
+bool Shader::shade(const HitPacket& hits, const NormalPacket& normals, ColorPacket& colors) const {
+    const std::uint32_t object = shared_object(hits);
+    if (object == kNoObject) {
+        colors = background_;
+        return false;
+    }
+    ColorLanes base;
+    find_base(hits, object, base);
+    ColorLanes lit;
+    shade_open(lights_, normals, base, lit);
+    finish(hits, lit, background_, colors);
+    return true;
+}
+
+/// Colours of surfaces before light falls on them.
+void Shader::find_base(const HitPacket& hits, std::uint32_t object, ColorLanes& base) const {
+    look_up_colors(hits, object, base);
+    if (pastel_ > 0.0F) mix(base, pastel_, {1, 1, 1});
 }
 
 void Shader::smooth(const HitPacket& hits, NormalPacket& normals) const {

@@ -67,6 +67,13 @@ class Shader {
     /// The same, from geometric normals.
     bool shade(const RayPacket& rays, const PointPacket& points, const HitPacket& hits,
                ColorPacket& colors) const;
+    /// Whether colours follow from which primitives were hit and their normals, so that hits need
+    /// no more than these.
+    bool needs_normals_only() const {
+        return open_ && ambient_ == nullptr && fog_ <= 0.0F && !any_vertex_colors_;
+    }
+    /// If so.
+    bool shade(const HitPacket& hits, const NormalPacket& normals, ColorPacket& colors) const;
     /// How bright the surface is for the light that falls on it, whatever its colour: 1 where the
     /// brightest light falls straight on. Where modes of shading know no light, 1.
     void brightness(const SurfacePacket& surface, Lanes<float>& bright) const;
@@ -102,6 +109,7 @@ class Shader {
     void look_up_gloss(const HitPacket& hits, Gloss& gloss) const;
     void illuminate(const SurfacePacket& surface, const ColorLanes& base, ColorLanes& lit) const;
     void add_fog(const SurfacePacket& surface, ColorLanes& lit) const;
+    void find_base(const HitPacket& hits, std::uint32_t object, ColorLanes& base) const;
     static void finish(const HitPacket& hits, const ColorLanes& lit, const ColorPacket& background,
                        ColorPacket& colors);
     void add_surface(const Object& object, const ResolvedMaterial& material, NormalSource usual);
@@ -111,7 +119,8 @@ class Shader {
     std::vector<Surface> surfaces_;
     bool any_smooth_ = false;        ///< has normals at corners
     bool any_line_normals_ = false;  ///< has line normals other than its corner normals
-    bool any_gloss_ = false;         ///< has highlights or metal
+    bool any_vertex_colors_ = false;
+    bool any_gloss_ = false;  ///< has highlights or metal
     ShadeMode mode_;
     float pastel_;
     LightRig lights_;

@@ -6,6 +6,8 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "scene/packed_normals-inl.h"
+
 HWY_BEFORE_NAMESPACE();
 namespace ink::HWY_NAMESPACE {
 
@@ -28,20 +30,11 @@ struct Sum {
     Vector x, y, z;
 };
 
-/// Unpacked, but not scaled to unit length: that shifts the weights of corners a little, alike on
-/// both sides of an edge, and saves three square roots.
 HWY_INLINE void add_corner(hn::Vec<Bits> packed, Vector weight, Sum& sum) {
-    const auto one = set(32767.0F);
-    const auto number = [](auto bits) {
-        return hn::ConvertTo(kFloats, hn::BitCast(kIndices, bits));
-    };
-    const auto x = hn::Sub(number(hn::And(packed, hn::Set(kBits, 0xFFFFU))), one);
-    const auto y = hn::Sub(number(hn::ShiftRight<16>(packed)), one);
-    const auto z = hn::Sub(hn::Sub(one, hn::Abs(x)), hn::Abs(y));
-    const auto fold = hn::Max(hn::Neg(z), hn::Zero(kFloats));
-    sum.x = hn::Add(sum.x, hn::Mul(weight, hn::Sub(x, hn::CopySign(fold, x))));
-    sum.y = hn::Add(sum.y, hn::Mul(weight, hn::Sub(y, hn::CopySign(fold, y))));
-    sum.z = hn::Add(sum.z, hn::Mul(weight, z));
+    const auto corner = unpack_normals(kFloats, packed);
+    sum.x = hn::Add(sum.x, hn::Mul(weight, corner.x));
+    sum.y = hn::Add(sum.y, hn::Mul(weight, corner.y));
+    sum.z = hn::Add(sum.z, hn::Mul(weight, corner.z));
 }
 
 void interpolate(const std::uint32_t* corner_normals, std::uint32_t object, const HitPacket& hits,
@@ -70,8 +63,9 @@ void interpolate(const std::uint32_t* corner_normals, std::uint32_t object, cons
         };
         const auto side = dot(sum.x, sum.y, sum.z, gx, gy, gz);
         const auto squared = dot(sum.x, sum.y, sum.z, sum.x, sum.y, sum.z);
-        // Opposite corner normals can cancel; the geometric normal stands in.
-        const auto use = hn::And(hn::RebindMask(kFloats, own), hn::Gt(squared, set(1e3F)));
+        // Else the geometric normal stands in.
+        const auto use =
+            hn::And(hn::RebindMask(kFloats, own), hn::Gt(squared, set(kLeastNormalSquared)));
         const auto length = hn::Sqrt(hn::IfThenElse(use, squared, set(1.0F)));
         const auto scale = hn::Div(hn::CopySign(set(1.0F), side), length);
         hn::Store(hn::IfThenElse(use, hn::Mul(sum.x, scale), gx), kFloats, normals.x.data() + i);
