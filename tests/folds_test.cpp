@@ -441,6 +441,43 @@ TEST(JointOfFolds, HasNoHairWhereOneEndedPastIt) {
     EXPECT_EQ(ends_of_one(eased(lines, folds.size())).size(), 2U);
 }
 
+TEST(EndOfAFold, DoesNotTurnBack) {
+    const std::vector<Segment> line = fold({10.3F, 20.0F}, {40.0F, 20.0F});
+    const auto left = [&](float length) {
+        const std::vector<Segment> hook = fold({40.0F, 20.0F}, {40.0F - length, 20.0F + length});
+        return eased(line + hook, 1000).size() - line.size();
+    };
+    EXPECT_EQ(left(4.0F), 0U);
+    EXPECT_GT(left(8.0F), 8U);
+    // A corner that does not turn back.
+    const std::vector<Segment> corner = line + fold({40.0F, 20.0F}, {44.0F, 24.0F});
+    EXPECT_EQ(eased(corner, 1000).size(), corner.size());
+    // What ends on another line is no loose end.
+    const std::vector<Segment> held =
+        line + fold({40.0F, 20.0F}, {36.0F, 24.0F}) + straight({36.0F, 24.0F}, {36.0F, 40.0F});
+    EXPECT_EQ(eased(held, 1000).size(), held.size());
+}
+
+TEST(DoubledFold, StaysWhereALineOfAnotherKindGoesOnAsIt) {
+    const auto plane = [](std::span<const Vec2f> points, std::span<Sample> out) {
+        std::ranges::transform(points, out.begin(), [](Vec2f p) {
+            return Sample{1, {p.x, -p.y, 0.0F}, {0, 0, 1}, 2.0F};
+        });
+    };
+    Viewpoint viewpoint;
+    viewpoint.dir = {0, 0, -1};
+    viewpoint.parallel = true;
+    viewpoint.origin = {{0, 0, 2}, {1, 0, 0}, {0, -1, 0}};
+    viewpoint.direction = {{0, 0, -1}, {}, {}};
+    const std::vector<Segment> folds =
+        fold({10.5F, 20.0F}, {70.5F, 20.0F}) + fold({20.5F, 21.5F}, {60.5F, 21.5F});
+    const auto dropped = [&](const std::vector<Segment>& lines) {
+        return mend_folds(lines, viewpoint, 1.0F, 2.0F, plane).crumbs.size();
+    };
+    EXPECT_GT(dropped(folds), 30U);
+    EXPECT_EQ(dropped(folds + straight({60.5F, 21.5F}, {70.5F, 24.0F}, LineType::boundary)), 0U);
+}
+
 TEST(JointOfFolds, IsTheSameWhateverTheOrderOfTheSegments) {
     std::vector<Segment> folds = fold({10.3F, 20.0F}, {43.0F, 20.0F}) +
                                  fold({40.0F, 22.0F}, {70.3F, 22.0F}) +

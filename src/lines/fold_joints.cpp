@@ -116,19 +116,44 @@ class JointEaser {
     /// In which a line goes that is walked along.
     static Vec2f direction(const Walk& walk) { return unit(walk.last() - walk.points.front()); }
 
-    /// Where one line was joined to another near its end, what is left of that end sticks out.
+    /// Where one line was joined to another near its end, what is left of that end sticks out; so
+    /// does the end of a line that turns back.
     void drop_hairs() {
         for_each_end([&](std::uint32_t end) {
             if (table_.at(point(end)).count != 1) return;
             const Walk hair = walk(end, settings_.hair * width_);
             if (hair.length < settings_.hair * width_ && table_.at(hair.last()).count == 3) {
-                for (const std::uint32_t e : hair.ends) found_.dropped.push_back(e / 2);
+                drop(hair.ends);
+            } else {
+                drop_hook(end);
             }
         });
         if (found_.dropped.empty()) return;
         for (const std::size_t k : found_.dropped) gone_[k] = 1;
         table_ = EndTable(count_ends(lines_));
         for_each_end([&](std::uint32_t end) { table_.add(point(end), end); });
+    }
+
+    void drop(std::span<const std::uint32_t> ends) {
+        for (const std::uint32_t end : ends) found_.dropped.push_back(end / 2);
+    }
+
+    /// Up to where the line turns back, if that is near.
+    void drop_hook(std::uint32_t end) {
+        const Walk hook = walk(end, settings_.hook * width_);
+        float sharpest = cosine(settings_.hook_turn);
+        std::size_t at = 0;
+        for (std::size_t n = 1; n + 1 < hook.points.size(); ++n) {
+            const Vec2f before = unit(hook.points[n] - hook.points[0]);
+            const float turn = dot(before, direction(walk(hook.ends[n], 1.5F * spacing_)));
+            if (turn >= sharpest) continue;
+            sharpest = turn;
+            at = n;
+        }
+        // Of what goes on for less, nobody knows which is the hook.
+        if (at == 0 || walk(hook.ends[at], hook.length).length < hook.length) return;
+        const Vec2f way = unit(hook.points[0] - hook.points[at]);
+        if (!ends_on_a_line({end, hook.points[0], way})) drop(std::span(hook.ends).first(at));
     }
 
     /// Where a piece that joins others turns.

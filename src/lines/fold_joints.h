@@ -17,6 +17,8 @@ struct JointSettings {
     float overlap = 2.5F;       ///< past each other by up to so many widths
     float gap = 2.0F;           ///< or short of each other
     float hair = 1.0F;          ///< widths: what is shorter and sticks out of a joint is dropped
+    float hook = 2.5F;          ///< widths: likewise where a line turns back, so near to its end,
+    float hook_turn = 70.0F;    ///< by as much, degrees
     float least_turn = 15.0F;   ///< degrees: a jog turns by as much at once,
     float most_turned = 30.0F;  ///< and no more than this from before it to after it: no corner
 };

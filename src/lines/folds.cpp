@@ -140,6 +140,7 @@ class FoldMender {
     }
 
     void find_loose_ends() {
+        whole_.assign(lines_.size(), 0);
         for (std::size_t n = 0; n < incidences_.size(); ++n) {
             const bool goes_on =
                 (n > 0 && incidences_[n - 1].key == incidences_[n].key) ||
@@ -151,6 +152,7 @@ class FoldMender {
             if (near != kNone) {
                 hangs_.push_back({fold, near, at_b});
                 tails_.push_back({fold, at_b});
+                if (goes_on_as_another(point)) whole_[pieces_[fold]] = 1;
                 const bool shared = point == lines_[near].a || point == lines_[near].b;
                 if (!shared && (!at_b || lines_[fold].spans_cell)) stubs_.push_back(fold);
                 continue;
@@ -158,6 +160,15 @@ class FoldMender {
             ends_.push_back({point, unit(point - back_from(fold, at_b)), fold, at_b});
         }
         pass_on();
+    }
+
+    /// Whether just one line of another kind ends there, too: one line, whose type changes.
+    bool goes_on_as_another(Vec2f point) const {
+        int count = 0;
+        squares_->near(point, [&](std::uint32_t k) {
+            count += !is_fold(k) && (lines_[k].a == point || lines_[k].b == point) ? 1 : 0;
+        });
+        return count == 1;
     }
 
     /// What hangs on another fold, a step from that one's end, goes on as that one does: it hangs
@@ -581,6 +592,7 @@ class FoldMender {
         for (const LooseEnd& end : ends_) {
             if (end.reached == kNone) tails_.push_back({end.fold, end.at_b});
         }
+        std::erase_if(tails_, [&](FoldTail tail) { return whole_[pieces_[tail.fold]] != 0; });
         const auto next_of = [&](FoldTail tail) {
             const Segment& segment = lines_[tail.fold];
             const auto meeting = meeting_at(tail.at_b ? segment.a : segment.b);
@@ -677,6 +689,7 @@ class FoldMender {
     std::vector<LooseEnd> ends_;
     /// Folds that end on a cell's side, where nothing goes on, near another line.
     std::vector<std::uint32_t> stubs_;
+    std::vector<std::uint8_t> whole_;  ///< a piece: it goes on as a line of another kind
     /// Ends of folds, by their segments, that may double another one.
     std::vector<FoldTail> tails_;
     FoldRepairs repairs_;
