@@ -164,6 +164,36 @@ TEST(SmoothNormals, LeaveTheNormalsOfAFileForShading) {
     EXPECT_EQ(unpack_normal(mesh.line_normals[0][0]), (Vec3f{1, 0, 0}));
 }
 
+/// A ridge that ends in the middle of a sheet.
+Mesh ending_ridge() {
+    Mesh mesh;
+    mesh.vertices = {{0, 0, 0}, {1, 0, 0.45F}, {1, 1, 0}, {-1, 0, 0}, {1, -1, 0}};
+    mesh.triangles = {{0, 1, 2}, {0, 2, 3}, {0, 3, 4}, {0, 4, 1}};
+    return mesh;
+}
+
+TEST(SmoothNormals, OfAMeshWithItsOwnKeepACreaseSharpUpToItsEnd) {
+    CreaseSettings sharp_only;
+    sharp_only.min_deg = sharp_only.sharp_deg;
+    Mesh shaded = ending_ridge();
+    smooth_normals(shaded, sharp_only);
+    ASSERT_TRUE(shaded.is_crease(0, 0));
+    ASSERT_EQ(count_flags(shaded, Mesh::kCreaseEdge), 2U);  // one edge, in two triangles
+    for (std::size_t i = 1; i < 4; ++i) {
+        EXPECT_EQ(shaded.corner_normals[i][0], shaded.corner_normals[0][0]);
+    }
+
+    Mesh mesh = ending_ridge();
+    mesh.corner_normals = shaded.corner_normals;
+    smooth_normals(mesh, sharp_only);
+    const auto normal = [&](std::size_t triangle) {
+        return unpack_normal(mesh.line_normals[triangle][0]);
+    };
+    EXPECT_GT(angle_between(normal(0), normal(3)), 40.0 * std::numbers::pi / 180.0);
+    EXPECT_EQ(normal(1), normal(2));
+    EXPECT_EQ(mesh.line_normals[1][0], shaded.corner_normals[1][0]);
+}
+
 TEST(SmoothNormals, OfAMeshWithoutItsOwnServeLinesToo) {
     Mesh mesh = sphere(1);
     smooth_normals(mesh);

@@ -1,3 +1,7 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
 #include <utility>
 #include <vector>
 
@@ -16,12 +20,17 @@ constexpr std::uint32_t kUnset = 0xFFFFFFFF;
 constexpr std::uint32_t kTaken = 0xFFFFFFFE;
 static_assert((kTaken >> 16U) == 0xFFFF);
 
+/// Distance of two unit vectors at this angle.
+float chord(float degrees) { return 2.0F * std::sin(degrees * std::numbers::pi_v<float> / 360.0F); }
+
 /// Computes the normals of one mesh, vertex by vertex; scratch memory is kept between vertices.
 class NormalSmoother {
   public:
+    /// `sharp`: the chord from which on creases stay what they are up to their ends, where one ends
+    /// on a smooth surface.
     NormalSmoother(const Mesh& mesh, const MeshTopology& topology, std::span<const Facet> facets,
-                   PackedNormals& normals)
-        : mesh_(mesh), topology_(topology), facets_(facets), normals_(normals) {}
+                   float sharp, PackedNormals& normals)
+        : mesh_(mesh), topology_(topology), facets_(facets), sharp_(sharp), normals_(normals) {}
 
     void smooth(std::size_t vertex) {
         for (const Corner corner : topology_.about(vertex)) {
@@ -62,6 +71,24 @@ class NormalSmoother {
         for (const auto& [corner, flipped] : fan_) {
             normal_of(corner) = flipped ? pack_normal(-mean) : upright;
         }
+        for (const FanCorner& at : fan_) {
+            if (ends_sharply(at, at.corner) || ends_sharply(at, previous(at.corner))) {
+                normal_of(at.corner) = own_normal(facets_[at.corner / 3].normal);
+            }
+        }
+    }
+
+    /// Whether an edge at a fan's corner is a sharp crease with the fan on both sides.
+    bool ends_sharply(const FanCorner& at, Corner edge) const {
+        if (!topology_.has_twin(edge) || !mesh_.is_crease(edge / 3, edge % 3)) return false;
+        const Corner twin = topology_.twin(edge);
+        const Vec3f own = facets_[edge / 3].normal;
+        const Vec3f other = facets_[twin / 3].normal;
+        const float turn = length(topology_.twin_is_flipped(edge) ? own + other : own - other);
+        if (turn < sharp_) return false;
+        const Corner beyond =
+            topology_.vertex(twin) == topology_.vertex(at.corner) ? twin : next(twin);
+        return std::ranges::find(fan_, beyond, &FanCorner::corner) != fan_.end();
     }
 
     void take(FanCorner at) {
@@ -90,6 +117,7 @@ class NormalSmoother {
     const Mesh& mesh_;
     const MeshTopology& topology_;
     std::span<const Facet> facets_;
+    float sharp_;
     PackedNormals& normals_;
     std::vector<FanCorner> fan_;
 };
@@ -105,11 +133,15 @@ void smooth_normals(Mesh& mesh, const CreaseSettings& settings) {
 void smooth_normals(Mesh& mesh, const MeshTopology& topology, const CreaseSettings& settings) {
     const std::vector<Facet> facets = facets_of(mesh, topology);
     mesh.edge_flags = classify_edges(mesh, topology, facets, settings);
+    // A mesh with normals of its own is not shaded by these, so that nothing need be smooth where a
+    // crease ends: the line would fade out over its last edge, however long and sharp that is.
+    const bool shaded = mesh.corner_normals.empty();
+    const float sharp = shaded ? std::numeric_limits<float>::infinity() : chord(settings.sharp_deg);
     PackedNormals normals;
     reserve_large(normals, mesh.triangles.size());
     normals.resize(mesh.triangles.size(), {kUnset, kUnset, kUnset});
     parallel_ranges(mesh.vertices.size(), 4096, [&](std::size_t begin, std::size_t end) {
-        NormalSmoother smoother(mesh, topology, facets, normals);
+        NormalSmoother smoother(mesh, topology, facets, sharp, normals);
         for (std::size_t vertex = begin; vertex < end; ++vertex) smoother.smooth(vertex);
     });
     (mesh.corner_normals.empty() ? mesh.corner_normals : mesh.line_normals) = std::move(normals);
