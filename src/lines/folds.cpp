@@ -246,28 +246,27 @@ class FoldMender {
         return -dot(sample.normal, viewpoint_.ray_direction(sample));
     }
 
-    /// What a worker needs while it looks at one square of the picture.
+    /// What a worker needs while it looks at one place of the picture.
     struct alignas(64) Scratch {
-        std::vector<LooseEnd*> active;
-        std::vector<Vec2f> centres, points;
+        std::vector<Vec2f> points;
         std::vector<Sample> samples;
     };
 
-    /// Ends of one square of the picture in step, so that their rays are close together.
+    /// End by end: a packet of rays that lie close together meets little of the scene.
     void follow_valleys() {
-        for_each_square(
-            ends_, [](const LooseEnd& end) { return end.point; },
-            [&](std::span<LooseEnd> group, std::size_t worker) {
-                while (step(group, worker)) {
-                }
-            });
+        loop_(ends_.size(), [&](std::size_t k, std::size_t worker) {
+            // Seldom does a way lead farther.
+            const Vec2f reach = Vec2f{8.0F, 8.0F} * spacing_;
+            enter(worker, ends_[k].point - reach, ends_[k].point + reach);
+            while (ends_[k].open) step(ends_[k], worker);
+        });
     }
 
     /// Sorts what lies on the picture by squares, says where the next rays go, and calls `visit`
     /// for what lies in each square, many at a time.
     template <class Thing, class Where, class Visit>
     void for_each_square(std::vector<Thing>& things, Where where, Visit visit) const {
-        constexpr float kSide = 64.0F;
+        constexpr float kSide = 16.0F;
         const auto square = [&](const Thing& thing) {
             const Vec2f p = where(thing);
             return std::pair{std::floor(p.y / kSide), std::floor(p.x / kSide)};
@@ -287,9 +286,7 @@ class FoldMender {
                 low = {std::min(low.x, p.x), std::min(low.y, p.y)};
                 high = {std::max(high.x, p.x), std::max(high.y, p.y)};
             }
-            // To enter a part of the screen takes as long as many rays: seldom does a way leave it.
-            const float reach = 16.0F * spacing_;
-            enter(worker, low - Vec2f{reach, reach}, high + Vec2f{reach, reach});
+            enter(worker, low - Vec2f{spacing_, spacing_}, high + Vec2f{spacing_, spacing_});
             visit(group, worker);
         });
     }
@@ -298,57 +295,40 @@ class FoldMender {
         if (workers_[worker].enter) workers_[worker].enter(low, high);
     }
 
-    bool step(std::span<LooseEnd> group, std::size_t worker) {
-        auto& [active, centres, points, samples] = scratch_[worker];
-        active.clear();
-        centres.clear();
-        for (LooseEnd& end : group) {
-            if (!end.open) continue;
-            active.push_back(&end);
-            const Vec2f from = end.path.empty() ? end.point : end.path.back();
-            centres.push_back(from + end.way * spacing_);
-        }
-        if (active.empty()) return false;
-        look_across(0.5F, true, worker);
-        look_across(0.125F, false, worker);
-        for (std::size_t n = 0; n < active.size(); ++n) {
-            if (active[n]->open) go_on(*active[n], centres[n]);
-        }
-        return true;
+    void step(LooseEnd& end, std::size_t worker) {
+        const Vec2f from = end.path.empty() ? end.point : end.path.back();
+        Vec2f centre = from + end.way * spacing_;
+        look_across(end, 0.5F, true, centre, worker);
+        if (end.open) look_across(end, 0.125F, false, centre, worker);
+        if (end.open) go_on(end, centre);
     }
 
-    /// Moves each centre to the lowest of the points beside it. Where there is no valley, the end
+    /// Moves the centre to the lowest of the points beside it. Where there is no valley, the end
     /// is given up.
-    void look_across(float apart, bool wide, std::size_t worker) {
-        auto& [active, centres, points, samples] = scratch_[worker];
+    void look_across(LooseEnd& end, float apart, bool wide, Vec2f& centre, std::size_t worker) {
+        auto& [points, samples] = scratch_[worker];
         points.clear();
-        for (std::size_t n = 0; n < active.size(); ++n) {
-            const Vec2f aside = left_of(active[n]->way) * (apart * spacing_);
-            for (int k = -kHalf; k <= kHalf; ++k) {
-                points.push_back(centres[n] + aside * static_cast<float>(k));
-            }
+        const Vec2f aside = left_of(end.way) * (apart * spacing_);
+        for (int k = -kHalf; k <= kHalf; ++k) {
+            points.push_back(centre + aside * static_cast<float>(k));
         }
         samples.resize(points.size());
         workers_[worker].sample(points, samples);
-        for (std::size_t n = 0; n < active.size(); ++n) {
-            LooseEnd& end = *active[n];
-            const std::span<const Sample> seen = std::span(samples).subspan(n * kAcross, kAcross);
-            std::array<float, kAcross> heights{};
-            for (std::size_t k = 0; k < kAcross; ++k) {
-                if (seen[k].id != lines_[end.fold].owner) end.open = false;
-                heights[k] = facing(seen[k]);
-            }
-            const auto lowest =
-                static_cast<std::size_t>(std::ranges::min_element(heights) - heights.begin());
-            const float rise = std::min(*std::max_element(heights.begin(), heights.begin() + kHalf),
-                                        *std::max_element(heights.end() - kHalf, heights.end()));
-            if (wide && (lowest == 0 || lowest + 1 == kAcross ||
-                         rise < heights[lowest] + settings_.least_rise ||
-                         heights[lowest] > settings_.most_facing)) {
-                end.open = false;
-            }
-            centres[n] = points[n * kAcross + lowest];
+        std::array<float, kAcross> heights{};
+        for (std::size_t k = 0; k < kAcross; ++k) {
+            if (samples[k].id != lines_[end.fold].owner) end.open = false;
+            heights[k] = facing(samples[k]);
         }
+        const auto lowest =
+            static_cast<std::size_t>(std::ranges::min_element(heights) - heights.begin());
+        const float rise = std::min(*std::max_element(heights.begin(), heights.begin() + kHalf),
+                                    *std::max_element(heights.end() - kHalf, heights.end()));
+        if (wide && (lowest == 0 || lowest + 1 == kAcross ||
+                     rise < heights[lowest] + settings_.least_rise ||
+                     heights[lowest] > settings_.most_facing)) {
+            end.open = false;
+        }
+        centre = points[lowest];
     }
 
     void go_on(LooseEnd& end, Vec2f point) const {
@@ -631,7 +611,7 @@ class FoldMender {
 
     void measure_depths(std::span<const std::uint32_t> folds, std::size_t worker,
                         std::vector<float>& depths) {
-        auto& [active, centres, points, samples] = scratch_[worker];
+        auto& [points, samples] = scratch_[worker];
         points.clear();
         for (const std::uint32_t k : folds) {
             const Vec2f middle = (lines_[k].a + lines_[k].b) * 0.5F;

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <numeric>
 #include <span>
-#include <utility>
 #include <vector>
 
 #include "lines/segment.h"
@@ -28,38 +28,59 @@ class SegmentSquares {
   public:
     SegmentSquares(std::span<const Segment> segments, float reach)
         : reach_(reach), side_(6.4F * reach) {
-        entries_.reserve(segments.size());
-        for (std::uint32_t k = 0; k < segments.size(); ++k) {
-            entries_.emplace_back(square((segments[k].a + segments[k].b) * 0.5F), k);
+        if (segments.empty()) return;
+        const auto middle = [](const Segment& s) { return (s.a + s.b) * 0.5F; };
+        lower_ = middle(segments[0]);
+        Vec2f upper = lower_;
+        for (const Segment& segment : segments) {
+            const Vec2f p = middle(segment);
+            lower_ = {std::min(lower_.x, p.x), std::min(lower_.y, p.y)};
+            upper = {std::max(upper.x, p.x), std::max(upper.y, p.y)};
         }
-        std::ranges::sort(entries_);
+        // No more squares than a few a segment.
+        const Vec2f size = upper - lower_;
+        const auto few = static_cast<float>(4 * segments.size() + 4096);
+        while ((size.x / side_ + 1.0F) * (size.y / side_ + 1.0F) > few) side_ *= 2.0F;
+        across_ = column(upper) + 1;
+        down_ = row(upper) + 1;
+        const auto square = [&](const Segment& segment) {
+            const Vec2f p = middle(segment);
+            return static_cast<std::size_t>(row(p) * across_ + column(p));
+        };
+        // Counted two places ahead: filling moves every start to its end, the next one's start.
+        starts_.assign(static_cast<std::size_t>(across_ * down_) + 2, 0);
+        for (const Segment& segment : segments) ++starts_[square(segment) + 2];
+        std::partial_sum(starts_.begin(), starts_.end(), starts_.begin());
+        entries_.resize(segments.size());
+        for (std::uint32_t k = 0; k < segments.size(); ++k) {
+            entries_[starts_[square(segments[k]) + 1]++] = k;
+        }
     }
 
     /// Calls `visit` for every segment that may come within the reach of `p`.
     template <class Visit>
     void near(Vec2f p, Visit visit) const {
-        for (const float dy : {-reach_, reach_}) {
-            for (const float dx : {-reach_, reach_}) {
-                const std::uint64_t key = square({p.x + dx, p.y + dy});
-                const bool seen_before = (dx > 0.0F && key == square({p.x - reach_, p.y + dy})) ||
-                                         (dy > 0.0F && key == square({p.x + dx, p.y - reach_}));
-                if (seen_before) continue;
-                auto at = std::ranges::lower_bound(entries_, std::pair{key, 0U});
-                for (; at != entries_.end() && at->first == key; ++at) visit(at->second);
+        const Vec2f low = p - Vec2f{reach_, reach_};
+        const Vec2f high = p + Vec2f{reach_, reach_};
+        for (int j = std::max(row(low), 0); j <= std::min(row(high), down_ - 1); ++j) {
+            for (int i = std::max(column(low), 0); i <= std::min(column(high), across_ - 1); ++i) {
+                const auto square = static_cast<std::size_t>(j * across_ + i);
+                for (std::uint32_t k = starts_[square]; k < starts_[square + 1]; ++k) {
+                    visit(entries_[k]);
+                }
             }
         }
     }
 
   private:
-    std::uint64_t square(Vec2f p) const {
-        const auto at = [this](float x) {
-            return static_cast<std::uint32_t>(static_cast<int>(std::floor(x / side_)) + (1 << 30));
-        };
-        return static_cast<std::uint64_t>(at(p.y)) << 32U | at(p.x);
-    }
+    int column(Vec2f p) const { return static_cast<int>(std::floor((p.x - lower_.x) / side_)); }
+    int row(Vec2f p) const { return static_cast<int>(std::floor((p.y - lower_.y) / side_)); }
 
     float reach_, side_;  ///< a square is larger than the reach and a segment together
-    std::vector<std::pair<std::uint64_t, std::uint32_t>> entries_;
+    Vec2f lower_;
+    int across_ = 0, down_ = 0;           ///< squares
+    std::vector<std::uint32_t> starts_;   ///< of the squares, row by row, in the entries
+    std::vector<std::uint32_t> entries_;  ///< segments
 };
 
 }  // namespace ink::plane

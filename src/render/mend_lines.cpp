@@ -77,6 +77,10 @@ void mend(const Edges& edges, std::vector<std::unique_ptr<LineFinder>>& finders,
     }
     std::vector<Segment> lines;
     std::vector<std::pair<std::uint32_t, std::uint32_t>> places;  // tile, and index within it
+    std::size_t most = 0;
+    for (const TileLines& tile : found) most += tile.segments.size();
+    lines.reserve(most);
+    places.reserve(most);
     for (std::uint32_t tile = 0; tile < found.size(); ++tile) {
         for (std::uint32_t k = 0; k < found[tile].segments.size(); ++k) {
             const Segment& segment = found[tile].segments[k];
