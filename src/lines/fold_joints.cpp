@@ -37,13 +37,16 @@ class JointEaser {
           gone_(lines.size()),
           spacing_(spacing),
           width_(width),
-          settings_(settings),
-          table_(count_ends(lines)) {
+          settings_(settings) {
         for (const std::size_t k : gone) gone_[k] = 1;
+        for (std::uint32_t k = 0; k < lines.size(); ++k) {
+            if (lines[k].type == LineType::self_occlusion) folds_.push_back(k);
+        }
     }
 
     FoldJoints run() {
-        for_each_end([&](std::uint32_t end) { table_.add(point(end), end); });
+        if (folds_.empty()) return {};
+        meet();
         drop_hairs();
         find_joints();
         find_overlaps();
@@ -67,6 +70,11 @@ class JointEaser {
         std::uint32_t first, second;
         float overlap;  ///< by how much, pixels
     };
+    struct LooseEnd {
+        std::uint32_t end;
+        Vec2f point, way;   ///< in which the line would go on
+        bool held = false;  ///< it ends on another line
+    };
     /// A way along a line, from one of its ends on.
     struct Walk {
         std::vector<Vec2f> points;
@@ -75,20 +83,50 @@ class JointEaser {
         Vec2f last() const { return points.back(); }
     };
 
-    static std::size_t count_ends(std::span<const Segment> lines) {
-        return 2 * static_cast<std::size_t>(std::ranges::count_if(lines, is_fold));
-    }
-    static bool is_fold(const Segment& line) { return line.type == LineType::self_occlusion; }
     Vec2f point(std::uint32_t end) const {
         return end % 2 == 0 ? lines_[end / 2].a : lines_[end / 2].b;
     }
 
     template <class Visit>
     void for_each_end(Visit visit) const {
-        for (std::uint32_t k = 0; k < lines_.size(); ++k) {
-            if (gone_[k] != 0 || !is_fold(lines_[k])) continue;
+        for (const std::uint32_t k : folds_) {
+            if (gone_[k] != 0) continue;
             visit(2 * k);
             visit(2 * k + 1);
+        }
+    }
+
+    /// Says which ends meet, and which end loosely.
+    void meet() {
+        table_ = EndTable(2 * folds_.size());
+        for_each_end([&](std::uint32_t end) { table_.add(point(end), end); });
+        loose_.clear();
+        for_each_end([&](std::uint32_t end) {
+            if (table_.at(point(end)).count != 1) return;
+            const Walk back = walk(end, 3.0F * spacing_);
+            loose_.push_back({end, point(end), direction(back) * -1.0F});
+        });
+        std::ranges::sort(loose_, {}, [](const LooseEnd& e) {
+            return std::tuple(e.point.y, e.point.x, e.way.y, e.way.x);
+        });
+        find_held();
+    }
+
+    /// Which loose ends end on a line.
+    void find_held() {
+        const float near = 0.75F * spacing_;
+        const auto height = [](const LooseEnd& loose) { return loose.point.y; };
+        for (std::uint32_t k = 0; k < lines_.size(); ++k) {
+            const Segment& line = lines_[k];
+            if (gone_[k] != 0) continue;
+            auto at =
+                std::ranges::lower_bound(loose_, std::min(line.a.y, line.b.y) - near, {}, height);
+            for (; at != loose_.end() && at->point.y <= std::max(line.a.y, line.b.y) + near; ++at) {
+                if (at->held || length(nearest_on(line, at->point) - at->point) > near) continue;
+                const Walk own = walk(at->end, 3.0F * spacing_);
+                at->held =
+                    std::ranges::none_of(own.ends, [&](std::uint32_t end) { return end / 2 == k; });
+            }
         }
     }
 
@@ -119,19 +157,17 @@ class JointEaser {
     /// Where one line was joined to another near its end, what is left of that end sticks out; so
     /// does the end of a line that turns back.
     void drop_hairs() {
-        for_each_end([&](std::uint32_t end) {
-            if (table_.at(point(end)).count != 1) return;
-            const Walk hair = walk(end, settings_.hair * width_);
+        for (const LooseEnd& loose : loose_) {
+            const Walk hair = walk(loose.end, settings_.hair * width_);
             if (hair.length < settings_.hair * width_ && table_.at(hair.last()).count == 3) {
                 drop(hair.ends);
-            } else {
-                drop_hook(end);
+            } else if (!loose.held) {
+                drop_hook(loose.end);
             }
-        });
+        }
         if (found_.dropped.empty()) return;
         for (const std::size_t k : found_.dropped) gone_[k] = 1;
-        table_ = EndTable(count_ends(lines_));
-        for_each_end([&](std::uint32_t end) { table_.add(point(end), end); });
+        meet();
     }
 
     void drop(std::span<const std::uint32_t> ends) {
@@ -152,8 +188,7 @@ class JointEaser {
         }
         // Of what goes on for less, nobody knows which is the hook.
         if (at == 0 || walk(hook.ends[at], hook.length).length < hook.length) return;
-        const Vec2f way = unit(hook.points[0] - hook.points[at]);
-        if (!ends_on_a_line({end, hook.points[0], way})) drop(std::span(hook.ends).first(at));
+        drop(std::span(hook.ends).first(at));
     }
 
     /// Where a piece that joins others turns.
@@ -169,40 +204,26 @@ class JointEaser {
         });
     }
 
-    struct LooseEnd {
-        std::uint32_t end;
-        Vec2f point, way;  ///< in which the line would go on
-    };
-
     /// Ends of two lines that run past each other, the nearest first.
     void find_overlaps() {
-        std::vector<LooseEnd> loose;
-        for_each_end([&](std::uint32_t end) {
-            if (table_.at(point(end)).count != 1) return;
-            const Walk back = walk(end, 3.0F * spacing_);
-            loose.push_back({end, point(end), direction(back) * -1.0F});
-        });
-        std::ranges::sort(loose, {}, [](const LooseEnd& e) {
-            return std::tuple(e.point.y, e.point.x, e.way.y, e.way.x);
-        });
         std::vector<std::tuple<float, std::size_t, std::size_t, float>> pairs;
         const float most = (settings_.aside + settings_.overlap) * width_;
-        for (std::size_t k = 0; k < loose.size(); ++k) {
-            for (std::size_t n = k + 1; n < loose.size(); ++n) {
-                if (loose[n].point.y - loose[k].point.y > most) break;
-                if (const auto overlap = overlap_of(loose[k], loose[n])) {
-                    pairs.emplace_back(length(loose[n].point - loose[k].point), k, n, *overlap);
+        for (std::size_t k = 0; k < loose_.size(); ++k) {
+            for (std::size_t n = k + 1; n < loose_.size(); ++n) {
+                if (loose_[n].point.y - loose_[k].point.y > most) break;
+                if (const auto overlap = overlap_of(loose_[k], loose_[n])) {
+                    pairs.emplace_back(length(loose_[n].point - loose_[k].point), k, n, *overlap);
                 }
             }
         }
         std::ranges::sort(pairs);
-        std::vector<bool> paired(loose.size());
+        std::vector<bool> paired(loose_.size());
         for (const auto& [apart, k, n, overlap] : pairs) {
-            if (paired[k] || paired[n] || ends_on_a_line(loose[k]) || ends_on_a_line(loose[n])) {
+            if (paired[k] || paired[n] || loose_[k].held || loose_[n].held) {
                 continue;
             }
             paired[k] = paired[n] = true;
-            joints_.push_back({-1.0F, loose[k].end, loose[n].end, std::max(overlap, 0.0F)});
+            joints_.push_back({-1.0F, loose_[k].end, loose_[n].end, std::max(overlap, 0.0F)});
         }
     }
 
@@ -224,23 +245,6 @@ class JointEaser {
             return {};
         }
         return -ahead;
-    }
-
-    bool ends_on_a_line(const LooseEnd& loose) const {
-        const Walk own = walk(loose.end, 3.0F * spacing_);
-        const float near = 0.75F * spacing_;
-        for (std::uint32_t k = 0; k < lines_.size(); ++k) {
-            const Segment& line = lines_[k];
-            if (gone_[k] != 0 || std::min(line.a.y, line.b.y) > loose.point.y + near ||
-                std::max(line.a.y, line.b.y) < loose.point.y - near ||
-                length(nearest_on(line, loose.point) - loose.point) > near) {
-                continue;
-            }
-            if (std::ranges::none_of(own.ends, [&](std::uint32_t e) { return e / 2 == k; })) {
-                return true;
-            }
-        }
-        return false;
     }
 
     /// Lets a curve take the place of the line on both sides of a joint.
@@ -291,7 +295,9 @@ class JointEaser {
     std::vector<std::uint8_t> gone_;
     float spacing_, width_;
     const JointSettings& settings_;
-    EndTable table_;
+    std::vector<std::uint32_t> folds_;  ///< the self-occlusions among the lines
+    EndTable table_{0};
+    std::vector<LooseEnd> loose_;  ///< by place
     std::vector<Joint> joints_;
     FoldJoints found_;
 };
