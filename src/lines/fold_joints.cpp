@@ -114,19 +114,36 @@ class JointEaser {
 
     /// Which loose ends end on a line.
     void find_held() {
+        if (loose_.empty()) return;
         const float near = 0.75F * spacing_;
-        const auto height = [](const LooseEnd& loose) { return loose.point.y; };
+        // Most lines are in rows of pixels without a loose end.
+        const float reach = near + 2.0F * spacing_;  // of a segment from its end a
+        const float top = loose_.front().point.y - reach;
+        const auto row = [top](float y) { return static_cast<std::size_t>(y - top); };
+        std::vector<std::uint8_t> has_ends(row(loose_.back().point.y + reach) + 1);
+        for (const LooseEnd& loose : loose_) {
+            const std::size_t last = row(loose.point.y + reach);
+            for (std::size_t k = row(loose.point.y - reach); k <= last; ++k) has_ends[k] = 1;
+        }
         for (std::uint32_t k = 0; k < lines_.size(); ++k) {
-            const Segment& line = lines_[k];
-            if (gone_[k] != 0) continue;
-            auto at =
-                std::ranges::lower_bound(loose_, std::min(line.a.y, line.b.y) - near, {}, height);
-            for (; at != loose_.end() && at->point.y <= std::max(line.a.y, line.b.y) + near; ++at) {
-                if (at->held || length(nearest_on(line, at->point) - at->point) > near) continue;
-                const Walk own = walk(at->end, 3.0F * spacing_);
-                at->held =
-                    std::ranges::none_of(own.ends, [&](std::uint32_t end) { return end / 2 == k; });
+            const float y = lines_[k].a.y;
+            if (!(y >= top) || row(y) >= has_ends.size() || has_ends[row(y)] == 0) continue;
+            if (gone_[k] == 0) hold(k, y - reach, y + reach);
+        }
+    }
+
+    /// Those of some rows that a line holds.
+    void hold(std::uint32_t line, float from, float to) {
+        const float near = 0.75F * spacing_;
+        auto at = std::ranges::lower_bound(loose_, from, {},
+                                           [](const LooseEnd& loose) { return loose.point.y; });
+        for (; at != loose_.end() && at->point.y <= to; ++at) {
+            if (at->held || length(nearest_on(lines_[line], at->point) - at->point) > near) {
+                continue;
             }
+            const Walk own = walk(at->end, 3.0F * spacing_);
+            at->held =
+                std::ranges::none_of(own.ends, [&](std::uint32_t end) { return end / 2 == line; });
         }
     }
 
@@ -141,6 +158,8 @@ class JointEaser {
     Walk walk(std::uint32_t end, float far) const {
         constexpr std::size_t kMost = 256;
         Walk walk;
+        walk.points.reserve(16);
+        walk.ends.reserve(16);
         walk.points.push_back(point(end));
         while (end != kNone && walk.length < far && walk.ends.size() < kMost) {
             walk.ends.push_back(end);
