@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
-#include <cmath>
 #include <cstdint>
 #include <iterator>
 #include <limits>
@@ -14,6 +12,7 @@
 
 #include "lines/bridges.h"
 #include "lines/fold_doubles.h"
+#include "lines/fold_probe.h"
 #include "lines/segment_squares.h"
 
 namespace ink {
@@ -21,7 +20,6 @@ namespace ink {
 namespace {
 
 using plane::dot;
-using plane::left_of;
 using plane::length;
 using plane::nearest_on;
 using plane::SegmentSquares;
@@ -46,13 +44,11 @@ class FoldMender {
                float width, std::span<const FoldWorker> workers, const FoldLoop& loop,
                const FoldSettings& settings)
         : lines_(lines),
-          viewpoint_(viewpoint),
           spacing_(spacing),
           width_(width),
-          workers_(workers),
           loop_(loop),
           settings_(settings),
-          scratch_(workers.size()) {}
+          probe_(lines, viewpoint, spacing, workers, settings) {}
 
     FoldRepairs run() {
         for (std::uint32_t k = 0; k < lines_.size(); ++k) {
@@ -239,96 +235,20 @@ class FoldMender {
 
     // Valleys of the angle between surface and ray
 
-    static constexpr int kHalf = 3;
-    static constexpr int kAcross = 2 * kHalf + 1;
-
-    float facing(const Sample& sample) const {
-        return -dot(sample.normal, viewpoint_.ray_direction(sample));
-    }
-
-    /// What a worker needs while it looks at one place of the picture.
-    struct alignas(64) Scratch {
-        std::vector<Vec2f> points;
-        std::vector<Sample> samples;
-    };
-
     /// End by end: a packet of rays that lie close together meets little of the scene.
     void follow_valleys() {
         loop_(ends_.size(), [&](std::size_t k, std::size_t worker) {
-            // Seldom does a way lead farther.
-            const Vec2f reach = Vec2f{8.0F, 8.0F} * spacing_;
-            enter(worker, ends_[k].point - reach, ends_[k].point + reach);
+            probe_.enter(ends_[k].point, 8.0F * spacing_, worker);  // seldom does it lead farther
             while (ends_[k].open) step(ends_[k], worker);
         });
     }
 
-    /// Sorts what lies on the picture by squares, says where the next rays go, and calls `visit`
-    /// for what lies in each square, many at a time.
-    template <class Thing, class Where, class Visit>
-    void for_each_square(std::vector<Thing>& things, Where where, Visit visit) const {
-        constexpr float kSide = 16.0F;
-        const auto square = [&](const Thing& thing) {
-            const Vec2f p = where(thing);
-            return std::pair{std::floor(p.y / kSide), std::floor(p.x / kSide)};
-        };
-        std::ranges::stable_sort(things, {}, square);
-        std::vector<std::size_t> starts;
-        for (std::size_t k = 0; k < things.size(); ++k) {
-            if (k == 0 || square(things[k]) != square(things[k - 1])) starts.push_back(k);
-        }
-        starts.push_back(things.size());
-        loop_(starts.size() - 1, [&](std::size_t k, std::size_t worker) {
-            const auto group = std::span(things).subspan(starts[k], starts[k + 1] - starts[k]);
-            Vec2f low = where(group[0]);
-            Vec2f high = low;
-            for (const Thing& thing : group) {
-                const Vec2f p = where(thing);
-                low = {std::min(low.x, p.x), std::min(low.y, p.y)};
-                high = {std::max(high.x, p.x), std::max(high.y, p.y)};
-            }
-            enter(worker, low - Vec2f{spacing_, spacing_}, high + Vec2f{spacing_, spacing_});
-            visit(group, worker);
-        });
-    }
-
-    void enter(std::size_t worker, Vec2f low, Vec2f high) const {
-        if (workers_[worker].enter) workers_[worker].enter(low, high);
-    }
-
-    void step(LooseEnd& end, std::size_t worker) {
+    void step(LooseEnd& end, std::size_t worker) const {
         const Vec2f from = end.path.empty() ? end.point : end.path.back();
-        Vec2f centre = from + end.way * spacing_;
-        look_across(end, 0.5F, true, centre, worker);
-        if (end.open) look_across(end, 0.125F, false, centre, worker);
-        if (end.open) go_on(end, centre);
-    }
-
-    /// Moves the centre to the lowest of the points beside it. Where there is no valley, the end
-    /// is given up.
-    void look_across(LooseEnd& end, float apart, bool wide, Vec2f& centre, std::size_t worker) {
-        auto& [points, samples] = scratch_[worker];
-        points.clear();
-        const Vec2f aside = left_of(end.way) * (apart * spacing_);
-        for (int k = -kHalf; k <= kHalf; ++k) {
-            points.push_back(centre + aside * static_cast<float>(k));
-        }
-        samples.resize(points.size());
-        workers_[worker].sample(points, samples);
-        std::array<float, kAcross> heights{};
-        for (std::size_t k = 0; k < kAcross; ++k) {
-            if (samples[k].id != lines_[end.fold].owner) end.open = false;
-            heights[k] = facing(samples[k]);
-        }
-        const auto lowest =
-            static_cast<std::size_t>(std::ranges::min_element(heights) - heights.begin());
-        const float rise = std::min(*std::max_element(heights.begin(), heights.begin() + kHalf),
-                                    *std::max_element(heights.end() - kHalf, heights.end()));
-        if (wide && (lowest == 0 || lowest + 1 == kAcross ||
-                     rise < heights[lowest] + settings_.least_rise ||
-                     heights[lowest] > settings_.most_facing)) {
-            end.open = false;
-        }
-        centre = points[lowest];
+        const std::optional<Vec2f> lowest =
+            probe_.find_valley(from + end.way * spacing_, end.way, lines_[end.fold].owner, worker);
+        end.open = lowest.has_value();
+        if (lowest) go_on(end, *lowest);
     }
 
     void go_on(LooseEnd& end, Vec2f point) const {
@@ -379,7 +299,8 @@ class FoldMender {
             if (ends_[k].reached != kNone || ends_[n].reached != kNone) continue;
             std::vector<Vec2f> path = plane::curve_between(ends_[k].point, ends_[k].way,
                                                            ends_[n].point, ends_[n].way, spacing_);
-            if (!is_steep(ends_[k], path)) continue;
+            probe_.enter(ends_[k].point, most, 0);
+            if (!probe_.is_steep(path, lines_[ends_[k].fold].owner, 0)) continue;
             ends_[k].path = std::move(path);
             ends_[k].reached = ends_[n].fold;
             ends_[n].reached = ends_[k].fold;
@@ -398,18 +319,6 @@ class FoldMender {
         const bool b_front = t.left_in_front == b.at_b;
         return s.owner == t.owner && a_front != b_front && root(a.fold) != root(b.fold) &&
                dot(a.way, way) > kAhead && dot(b.way, way) < -kAhead;
-    }
-
-    bool is_steep(const LooseEnd& end, std::span<const Vec2f> path) {
-        std::vector<Sample>& samples = scratch_[0].samples;
-        samples.resize(path.size());
-        const float reach = settings_.longest_leap * width_;
-        enter(0, end.point - Vec2f{reach, reach}, end.point + Vec2f{reach, reach});
-        workers_[0].sample(path, samples);
-        return std::ranges::all_of(samples, [&](const Sample& sample) {
-            return sample.id == lines_[end.fold].owner &&
-                   facing(sample) <= settings_.most_facing_leapt;
-        });
     }
 
     // Bridges
@@ -592,15 +501,10 @@ class FoldMender {
             return groups[root(k)].depth < 0.0F && asked(root(k));
         });
         if (measured.empty()) return;
-        std::vector<float> depths(lines_.size());
-        for_each_square(
-            measured, [&](std::uint32_t k) { return (lines_[k].a + lines_[k].b) * 0.5F; },
-            [&](std::span<const std::uint32_t> group, std::size_t worker) {
-                measure_depths(group, worker, depths);
-            });
-        for (const std::uint32_t k : measured) {
-            float& depth = groups[root(k)].depth;
-            depth = std::max(depth, depths[k]);
+        const std::vector<float> depths = probe_.depths_of(measured, loop_);
+        for (std::size_t n = 0; n < measured.size(); ++n) {
+            float& depth = groups[root(measured[n])].depth;
+            depth = std::max(depth, depths[n]);
         }
         for (const std::uint32_t k : measured) {
             if (groups[root(k)].depth < 0.0F) groups[root(k)].depth = kBottomless;
@@ -609,52 +513,11 @@ class FoldMender {
 
     static constexpr float kBottomless = 1e9F;  // nothing but another geometry
 
-    void measure_depths(std::span<const std::uint32_t> folds, std::size_t worker,
-                        std::vector<float>& depths) {
-        auto& [points, samples] = scratch_[worker];
-        points.clear();
-        for (const std::uint32_t k : folds) {
-            const Vec2f middle = (lines_[k].a + lines_[k].b) * 0.5F;
-            const Vec2f aside = left_of(unit(lines_[k].b - lines_[k].a)) * (0.25F * spacing_);
-            points.push_back(middle + aside);
-            points.push_back(middle - aside);
-        }
-        samples.resize(points.size());
-        workers_[worker].sample(points, samples);
-        for (std::size_t n = 0; n < folds.size(); ++n) {
-            const Sample& a = samples[2 * n];
-            const Sample& b = samples[2 * n + 1];
-            const float pixel =
-                length_between(points[2 * n], points[2 * n + 1], a) / (0.5F * spacing_);
-            const bool one = a.id == b.id;
-            // Beside an outline, what is seen there is that outline's far side.
-            depths[folds[n]] = one ? depth_between(a, b) / pixel : -1.0F;
-        }
-    }
-
-    /// How far two hits are from lying on one surface, however steep that is.
-    static float depth_between(const Sample& a, const Sample& b) {
-        const Vec3f normals = a.normal + b.normal;
-        const float size = ink::length(normals);
-        return size > 0.0F ? std::abs(ink::dot(b.position - a.position, normals)) / size : 0.0F;
-    }
-
-    /// Between two points of the screen, at the depth of a sample.
-    float length_between(Vec2f p, Vec2f q, const Sample& sample) const {
-        const auto at = [&](Vec2f point) {
-            return viewpoint_.origin(point) +
-                   normalize(viewpoint_.direction(point)) * static_cast<double>(sample.t);
-        };
-        return static_cast<float>(ink::length(at(q) - at(p)));
-    }
-
     std::span<const Segment> lines_;
-    const Viewpoint& viewpoint_;
     float spacing_, width_;
-    std::span<const FoldWorker> workers_;
     const FoldLoop& loop_;
     const FoldSettings& settings_;
-    std::vector<Scratch> scratch_;                ///< of each worker
+    FoldProbe probe_;
     std::vector<std::uint32_t> folds_;            ///< the self-occlusions among the lines
     mutable std::vector<std::uint32_t> parents_;  ///< paths get shorter as they are walked
     std::vector<std::uint32_t> pieces_;  ///< of each line: its group before any bridge was built
