@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace inktrace::viewer {
@@ -65,6 +66,38 @@ TEST(CameraPose, KeepsSizesWhenTheProjectionChanges) {
     const CameraPose parallel = before.with_projection(true);
     EXPECT_DOUBLE_EQ(parallel.visible_height(), before.visible_height());
     expect_near(parallel.with_projection(false).eye, before.eye);
+}
+
+/// How far a point lies from the middle of a picture, in shares of half its sides.
+double place_in(const CameraPose& pose, Vec3d point, ink::Size picture) {
+    const Vec3d v = point - pose.eye;
+    const double half = pose.orthographic()
+                            ? 0.5 * pose.height
+                            : -dot(v, pose.back()) * std::tan(pose.fov_deg * std::acos(-1.0) / 360);
+    const double across = std::abs(dot(v, pose.right())) / half * picture.height / picture.width;
+    return std::max(across, std::abs(dot(v, pose.above())) / half);
+}
+
+TEST(CameraPose, FramesABoxAsLargeAsThereIsRoomFor) {
+    const Vec3d lower{-3, 1, 2};
+    const Vec3d upper{4, 2.5, 9};
+    for (const bool parallel : {false, true}) {
+        for (const ink::Size size : {ink::Size{640, 480}, {300, 800}, {500, 500}}) {
+            for (const CameraPose& from : {some_pose(), some_pose().turned(70, 40).rolled(20)}) {
+                const CameraPose pose = from.with_projection(parallel).framing(lower, upper, size);
+                double farthest = 0.0;
+                for (unsigned corner = 0; corner < 8; ++corner) {
+                    const Vec3d point{(corner & 1U) != 0 ? lower.x : upper.x,
+                                      (corner & 2U) != 0 ? lower.y : upper.y,
+                                      (corner & 4U) != 0 ? lower.z : upper.z};
+                    farthest = std::max(farthest, place_in(pose, point, size));
+                }
+                EXPECT_LT(farthest, 1.0);
+                EXPECT_GT(farthest, 0.97);
+                expect_near(pose.back(), from.back());
+            }
+        }
+    }
 }
 
 TEST(CameraPose, IsReadAsItWasWritten) {

@@ -120,14 +120,29 @@ CameraPose CameraPose::with_projection(bool parallel) const {
     return pose;
 }
 
-CameraPose CameraPose::framing(Vec3d middle, double radius, ink::Size picture) const {
-    const double aspect = std::min(1.0, static_cast<double>(picture.width) / picture.height);
+CameraPose CameraPose::framing(Vec3d lower, Vec3d upper, ink::Size picture) const {
+    constexpr double kMargin = 1.02;
+    const double aspect = static_cast<double>(picture.width) / picture.height;
+    const double slope = std::tan(radians(fov_deg) / 2.0) / kMargin;
     CameraPose pose = *this;
-    pose.look_at = middle;
-    const double slope = std::tan(radians(fov_deg) / 2.0) * aspect;
-    const double away = radius * std::hypot(1.0, slope) / slope;
-    pose.eye = middle + back() * (orthographic() ? std::max(distance(), 2.0 * radius) : away);
-    if (orthographic()) pose.height = 2.0 * radius / aspect;
+    pose.look_at = (lower + upper) * 0.5;
+    const Vec3d half = (upper - lower) * 0.5;
+    double away = 0.0;
+    double half_height = 0.0;
+    for (unsigned corner = 0; corner < 8; ++corner) {
+        const Vec3d p{(corner & 1U) != 0 ? half.x : -half.x, (corner & 2U) != 0 ? half.y : -half.y,
+                      (corner & 4U) != 0 ? half.z : -half.z};
+        const double reach =
+            std::max(std::abs(dot(p, above())), std::abs(dot(p, right())) / aspect);
+        half_height = std::max(half_height, reach);
+        away = std::max(away, dot(p, back()) + reach / slope);
+    }
+    if (half_height <= 0.0) return focused(pose.look_at);
+    if (orthographic()) {
+        pose.height = 2.0 * kMargin * half_height;
+        away = std::max(distance(), 2.0 * length(half));
+    }
+    pose.eye = pose.look_at + back() * away;
     return pose;
 }
 

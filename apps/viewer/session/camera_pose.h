@@ -38,8 +38,8 @@ struct CameraPose {
     CameraPose focused(ink::Vec3d point) const;
     /// The other projection; what is at the distance of the point keeps its size.
     CameraPose with_projection(bool parallel) const;
-    /// From the same direction, with all of a ball in the picture.
-    CameraPose framing(ink::Vec3d middle, double radius, ink::Size picture) const;
+    /// From the same direction, with all of a box in the picture, as large as there is room for.
+    CameraPose framing(ink::Vec3d lower, ink::Vec3d upper, ink::Size picture) const;
 
     /// The point under a pixel at the distance of the point it looks at.
     ink::Vec3d under(double x, double y, ink::Size picture) const;

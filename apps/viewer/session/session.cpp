@@ -209,8 +209,7 @@ void Session::frame_all() {
         lower = {std::min(lower.x, a.x), std::min(lower.y, a.y), std::min(lower.z, a.z)};
         upper = {std::max(upper.x, b.x), std::max(upper.y, b.y), std::max(upper.z, b.z)};
     }
-    const Vec3d diagonal = upper - lower;
-    move_camera(camera().framing(lower + diagonal * 0.5, 0.5 * length(diagonal), size()));
+    move_camera(camera().framing(lower, upper, size()));
 }
 
 bool Session::orthographic() const { return !settings_.get("orthographic").empty(); }
