@@ -312,39 +312,71 @@ float raster_farthest(const FrontRaster& raster) {
 
 // ---- Rays ----
 
-void start_front(float centre_x, float centre_y, float slope_step, const PointPacket& points,
-                 Front& front) {
+/// The camera's part of a ray.
+struct Lens {
+    float centre_x, centre_y, slope_step;
+
+    explicit Lens(const Projection& projection)
+        : centre_x(projection.centre.x),
+          centre_y(projection.centre.y),
+          slope_step(static_cast<float>(projection.slope_step)) {}
+};
+
+/// Some lanes of a front as it starts, and which of them are active.
+struct StartedLanes {
+    Vector x, y;
+    Mask on;
+
+    HWY_INLINE StartedLanes(const Lens& lens, const PointPacket& points, int i, Front& front)
+        : x(hn::Sub(load(points.x, i), set(lens.centre_x))),
+          y(hn::Sub(load(points.y, i), set(lens.centre_y))),
+          on(hn::RebindMask(kFloats, hn::Ne(load(points.active, i), hn::Zero(kIntegers)))) {
+        const auto slope_x = hn::Mul(x, set(lens.slope_step));
+        const auto slope_y = hn::Mul(y, set(lens.slope_step));
+        const auto squared =
+            hn::Add(hn::Add(set(1.0F), hn::Mul(slope_x, slope_x)), hn::Mul(slope_y, slope_y));
+        hn::Store(x, kFloats, front.x.data() + i);
+        hn::Store(y, kFloats, front.y.data() + i);
+        hn::Store(hn::Div(set(1.0F), squared), kFloats, front.foreshortening.data() + i);
+        hn::Store(hn::IfThenElse(on, set(kInfinity), set(-kInfinity)), kFloats,
+                  front.depth.data() + i);
+    }
+};
+
+void start_front(const Projection& projection, const PointPacket& points, Front& front) {
+    const Lens lens(projection);
     const auto infinity = set(kInfinity);
     const auto minus_infinity = set(-kInfinity);
     auto left = infinity;
     auto top = infinity;
     auto right = minus_infinity;
     auto bottom = minus_infinity;
-    auto farthest = minus_infinity;
+    float farthest = -kInfinity;
     for (int i = 0; i < kLanes; i += kStep) {
-        const auto on =
-            hn::RebindMask(kFloats, hn::Ne(load(points.active, i), hn::Zero(kIntegers)));
-        const auto x = hn::Sub(load(points.x, i), set(centre_x));
-        const auto y = hn::Sub(load(points.y, i), set(centre_y));
-        const auto slope_x = hn::Mul(x, set(slope_step));
-        const auto slope_y = hn::Mul(y, set(slope_step));
-        const auto squared =
-            hn::Add(hn::Add(set(1.0F), hn::Mul(slope_x, slope_x)), hn::Mul(slope_y, slope_y));
-        const auto depth = hn::IfThenElse(on, infinity, minus_infinity);
-        hn::Store(x, kFloats, front.x.data() + i);
-        hn::Store(y, kFloats, front.y.data() + i);
-        hn::Store(hn::Div(set(1.0F), squared), kFloats, front.foreshortening.data() + i);
-        hn::Store(depth, kFloats, front.depth.data() + i);
-        left = hn::Min(left, hn::IfThenElse(on, x, infinity));
-        top = hn::Min(top, hn::IfThenElse(on, y, infinity));
-        right = hn::Max(right, hn::IfThenElse(on, x, minus_infinity));
-        bottom = hn::Max(bottom, hn::IfThenElse(on, y, minus_infinity));
-        farthest = hn::Max(farthest, depth);
+        const StartedLanes lanes(lens, points, i, front);
+        left = hn::Min(left, hn::IfThenElse(lanes.on, lanes.x, infinity));
+        top = hn::Min(top, hn::IfThenElse(lanes.on, lanes.y, infinity));
+        right = hn::Max(right, hn::IfThenElse(lanes.on, lanes.x, minus_infinity));
+        bottom = hn::Max(bottom, hn::IfThenElse(lanes.on, lanes.y, minus_infinity));
+        if (!hn::AllFalse(kFloats, lanes.on)) farthest = kInfinity;
     }
-    front.window = {
-        hn::GetLane(hn::MinOfLanes(kFloats, left)), hn::GetLane(hn::MaxOfLanes(kFloats, right)),
-        hn::GetLane(hn::MinOfLanes(kFloats, top)), hn::GetLane(hn::MaxOfLanes(kFloats, bottom)),
-        hn::GetLane(hn::MaxOfLanes(kFloats, farthest))};
+    front.window = {hn::GetLane(hn::MinOfLanes(kFloats, left)),
+                    hn::GetLane(hn::MaxOfLanes(kFloats, right)),
+                    hn::GetLane(hn::MinOfLanes(kFloats, top)),
+                    hn::GetLane(hn::MaxOfLanes(kFloats, bottom)), farthest};
+}
+
+void start_fronts(const Projection& projection, std::span<const PointPacket> points,
+                  Front* fronts) {
+    const Lens lens(projection);
+    for (const PointPacket& packet : points) {
+        Front& front = *fronts++;
+        front.window.farthest = -kInfinity;
+        for (int i = 0; i < kLanes; i += kStep) {
+            const StartedLanes lanes(lens, packet, i, front);
+            if (!hn::AllFalse(kFloats, lanes.on)) front.window.farthest = kInfinity;
+        }
+    }
 }
 
 }  // namespace ink::HWY_NAMESPACE
@@ -361,6 +393,7 @@ HWY_EXPORT(intersect_raster);
 HWY_EXPORT(raster_farthest);
 HWY_EXPORT(raster_matters);
 HWY_EXPORT(start_front);
+HWY_EXPORT(start_fronts);
 
 LaneBits overlap(const BoundsPacket& bounds, const Window& window) {
     return HWY_DYNAMIC_DISPATCH(find_overlap)(bounds, window);
@@ -388,9 +421,11 @@ bool matters(const BoundsPacket& bounds, int lane, const FrontRaster& raster) {
 }
 
 void Front::start(const Projection& projection, const PointPacket& points) {
-    HWY_DYNAMIC_DISPATCH(start_front)
-    (projection.centre.x, projection.centre.y, static_cast<float>(projection.slope_step), points,
-     *this);
+    HWY_DYNAMIC_DISPATCH(start_front)(projection, points, *this);
+}
+
+void start_cells(const Projection& projection, std::span<const PointPacket> points, Front* fronts) {
+    HWY_DYNAMIC_DISPATCH(start_fronts)(projection, points, fronts);
 }
 
 }  // namespace ink

@@ -20,6 +20,9 @@ struct Front {
     void start(const Projection& projection, const PointPacket& points);
 };
 
+/// Starts the fronts of cells of a raster, of whose windows only `farthest` is needed.
+void start_cells(const Projection& projection, std::span<const PointPacket> points, Front* fronts);
+
 /// Fronts in the cells of a raster, row by row. Four by four cells are asked together whether a
 /// primitive matters to them; such a window may begin at any cell, so rows of cells end in kBeyond
 /// cells without fronts, and as many such rows follow the last one.
@@ -68,8 +71,8 @@ bool matters(const BoundsPacket& bounds, int lane, const FrontRaster& raster);
 void resolve(const Front& front, const RayPacket& rays, const ScreenPacket* packets,
              HitPacket& hits);
 /// A front whose hits are all triangles, see TileTracer::see.
-void see(const Front& front, const PacketShades* shades, bool distances, HitPacket& hits,
-         NormalPacket& normals);
+void see(const Basis& basis, const Front& front, const PacketShades* shades, bool distances,
+         HitPacket& hits, NormalPacket& normals);
 /// The same without normals and barycentric coordinates, which are left as they are.
 void identify(const Front& front, const ScreenPacket* packets, HitPacket& hits);
 

@@ -67,8 +67,17 @@ HWY_INLINE void store(const Vectors& v, int i, Lanes<float>& x, Lanes<float>& y,
     hn::Store(v.z, kFloats, z.data() + i);
 }
 
-void see_front(const Front& front, const PacketShades* shades, bool distances, HitPacket& hits,
-               NormalPacket& normals) {
+/// How far something at a depth is along the ray through q.
+HWY_INLINE Vector distance(const Basis& basis, Vector qx, Vector qy, Vector depth) {
+    const auto slope = set(static_cast<float>(basis.slope_step));
+    const auto x = hn::Mul(qx, slope);
+    const auto y = hn::Mul(qy, slope);
+    const auto squared = hn::Add(hn::Add(set(1.0F), hn::Mul(x, x)), hn::Mul(y, y));
+    return hn::Mul(depth, hn::Sqrt(squared));
+}
+
+void see_front(const Basis& basis, const Front& front, const PacketShades* shades, bool distances,
+               HitPacket& hits, NormalPacket& normals) {
     for (int i = 0; i < kLanes; i += kStep) {
         const auto depth = load(front.depth, i);
         const auto hit = hn::And(hn::Lt(depth, set(kInfinity)), hn::Gt(depth, set(-kInfinity)));
@@ -88,7 +97,7 @@ void see_front(const Front& front, const PacketShades* shades, bool distances, H
         hn::Store(seen.object, kIndices, hits.object.data() + i);
         hn::Store(seen.primitive, kIndices, hits.primitive.data() + i);
         if (!distances) continue;
-        const auto t = hn::Div(depth, hn::Sqrt(load(front.foreshortening, i)));
+        const auto t = distance(basis, qx, qy, depth);
         hn::Store(hn::IfThenElse(hit, t, set(kInfinity)), kFloats, hits.t.data() + i);
     }
 }
@@ -102,9 +111,9 @@ namespace ink {
 
 HWY_EXPORT(see_front);
 
-void see(const Front& front, const PacketShades* shades, bool distances, HitPacket& hits,
-         NormalPacket& normals) {
-    HWY_DYNAMIC_DISPATCH(see_front)(front, shades, distances, hits, normals);
+void see(const Basis& basis, const Front& front, const PacketShades* shades, bool distances,
+         HitPacket& hits, NormalPacket& normals) {
+    HWY_DYNAMIC_DISPATCH(see_front)(basis, front, shades, distances, hits, normals);
 }
 
 }  // namespace ink

@@ -66,7 +66,7 @@ class ScreenTileTracer final : public TileTracer {
     void intersect(std::span<const PointPacket> points, std::span<const RayPacket> rays,
                    std::span<HitPacket> hits) override;
     void find(const BlockRaster& raster, std::span<const PointPacket> points) override {
-        start(points);
+        start(points, raster.packets);
         if (raster.packets > 0) find_fronts(lay_out(raster));
         for (std::size_t k = raster.packets; k < points.size(); ++k) find_front(fronts_[k]);
     }
@@ -82,7 +82,8 @@ class ScreenTileTracer final : public TileTracer {
     void see(std::size_t first, bool distances, std::span<HitPacket> hits,
              std::span<NormalPacket> normals) override {
         for (std::size_t k = 0; k < hits.size(); ++k) {
-            ink::see(fronts_[first + k], store_.shades(), distances, hits[k], normals[k]);
+            ink::see(view_.basis, fronts_[first + k], store_.shades(), distances, hits[k],
+                     normals[k]);
         }
     }
     void identify(std::span<const PointPacket> points, std::span<const RayPacket> rays,
@@ -101,7 +102,7 @@ class ScreenTileTracer final : public TileTracer {
     static constexpr std::uint32_t kNotYet = 0xFFFFFFFFU;
 
     void find_front(Front& front);
-    void start(std::span<const PointPacket> points);
+    void start(std::span<const PointPacket> points, std::size_t on_raster);
     template <class Visit>
     bool for_each_near(const Window& window, const Visit& visit);
     FrontRaster lay_out(const BlockRaster& raster);
@@ -147,9 +148,13 @@ void ScreenTileTracer::resolve(std::size_t first, std::span<const PointPacket> /
     }
 }
 
-void ScreenTileTracer::start(std::span<const PointPacket> points) {
-    fronts_.resize(std::max(fronts_.size(), points.size()));
-    for (std::size_t k = 0; k < points.size(); ++k) fronts_[k].start(view_.projection, points[k]);
+/// The first packets lie on a raster.
+void ScreenTileTracer::start(std::span<const PointPacket> points, std::size_t on_raster) {
+    if (fronts_.size() < points.size()) fronts_.resize(points.size());
+    start_cells(view_.projection, points.first(on_raster), fronts_.data());
+    for (std::size_t k = on_raster; k < points.size(); ++k) {
+        fronts_[k].start(view_.projection, points[k]);
+    }
 }
 
 FrontRaster ScreenTileTracer::lay_out(const BlockRaster& raster) {
@@ -287,7 +292,7 @@ ScreenEffort ScreenTileTracer::probe(Vec2f corner, std::uint32_t most_clusters) 
     }
     const BlockRaster raster{corner.x, corner.y, kSide, kProbeSide, kProbeSide, cells, kBlocks};
     enter({corner.x, corner.y, corner.x + kSide * kProbeSide, corner.y + kSide * kProbeSide});
-    start(points);
+    start(points, kBlocks);
     find_fronts(lay_out(raster), most_clusters);
     ScreenEffort effort{used_, 0};
     for (std::size_t k = 0; k < kBlocks; ++k) {

@@ -105,9 +105,9 @@ void LineFinder::trace_lattice(const Tile& tile) {
     seen_.assign(blocks_.size(), 0);
     sampler_.find_blocks(blocks_, {});
     saw_anything_ = false;
-    constexpr std::size_t kRun = 16;
-    for (std::size_t first = 0; first < blocks_.size(); first += kRun) {
-        const std::size_t count = std::min(kRun, blocks_.size() - first);
+    const std::size_t run = takes_shades_ ? 32 : 16;  // rays take as much room as all else
+    for (std::size_t first = 0; first < blocks_.size(); first += run) {
+        const std::size_t count = std::min(run, blocks_.size() - first);
         take(first, count);
         timer.lap(stats_.trace_ms);
         if (borders_ != nullptr) {
@@ -270,6 +270,12 @@ template <class T>
 void LineFinder::copy_to_grid(std::size_t block, const T* from, T* plane) const {
     const Block& place = blocks_[block];
     T* to = plane + grid_.index(place.x - grid_.x0, place.y - grid_.y0);
+    if (place.columns == kBlockSide && place.rows == kBlockSide) {
+        for (int j = 0; j < kBlockSide; ++j) {
+            std::copy_n(from + j * kBlockSide, kBlockSide, to + j * grid_.width);
+        }
+        return;
+    }
     for (int j = 0; j < place.rows; ++j) {
         // A size known to the compiler makes each row one move.
         if (place.columns == kBlockSide) {
