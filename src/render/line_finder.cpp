@@ -383,7 +383,8 @@ void LineFinder::find_lines() {
         const Timer phase(stats_.detect_ms);
         DetectSettings settings = edges_.detect;
         if (ids_only_) settings.depths = settings.normals = false;
-        detect(grid_, settings, suspects_);
+        suspects_.clear();
+        if (saw_anything_) detect(grid_, settings, suspects_);
         if (!ids_only_) drop_smooth();
     }
     {
