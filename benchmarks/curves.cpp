@@ -51,7 +51,7 @@ Measured measure(const Scene& scene, const Tracer& tracer, const Settings& setti
 std::vector<float> colors(const Film& film) {
     std::vector<float> all;
     for (std::size_t k = 0; k < 3; ++k) {
-        const auto& plane = std::get<std::vector<float>>(film.channels().channels[k].values);
+        const auto& plane = std::get<Plane<float>>(film.channels().channels[k].values);
         all.insert(all.end(), plane.begin(), plane.end());
     }
     return all;

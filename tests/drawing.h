@@ -3,7 +3,6 @@
 #include <stdexcept>
 #include <string_view>
 #include <variant>
-#include <vector>
 
 #include "accel/tracer.h"
 #include "render/render.h"
@@ -16,9 +15,9 @@ inline Film draw(const Scene& scene, const Settings& settings, const PixelFormat
 }
 
 /// A float plane of a film by its channel's name.
-inline const std::vector<float>& plane(const Film& film, std::string_view name) {
+inline const Plane<float>& plane(const Film& film, std::string_view name) {
     for (const Channel& channel : film.channels().channels) {
-        if (channel.name == name) return std::get<std::vector<float>>(channel.values);
+        if (channel.name == name) return std::get<Plane<float>>(channel.values);
     }
     throw std::logic_error("no such plane");
 }

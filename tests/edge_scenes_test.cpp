@@ -319,7 +319,7 @@ TEST(MendedLines, DoNotDependOnTilesOrThreads) {
     Settings settings = plan_view({240, 160}, 2.0);
     settings.view.orthographic = 1.4;
     settings.view.eye = Vec3d{1, 3.2, 10};
-    std::optional<std::vector<float>> first;
+    std::optional<Plane<float>> first;
     for (const int tile : {16, 64, 256}) {
         for (const int threads : {1, 2}) {
             settings.tile = tile;

@@ -24,9 +24,8 @@ namespace {
 std::size_t pixels_of(const Film& film, LineType type) {
     for (const Channel& channel : film.channels().channels) {
         if (channel.name != "line.type") continue;
-        return static_cast<std::size_t>(
-            std::ranges::count(std::get<std::vector<std::uint32_t>>(channel.values),
-                               static_cast<std::uint32_t>(type) + 1));
+        return static_cast<std::size_t>(std::ranges::count(
+            std::get<Plane<std::uint32_t>>(channel.values), static_cast<std::uint32_t>(type) + 1));
     }
     throw std::logic_error("no line.type");
 }
@@ -103,8 +102,8 @@ Object coarse_torus() {
 /// Drawn, they come from the nearest edge of what each pixel sees; as data, from crossings that are
 /// joined. Both must ink the same pixels.
 /// How much of each pixel the bands of segments cover, drawn one by one.
-std::vector<float> ink_of(const std::vector<Segment>& segments, Size size, double width_px) {
-    std::vector<float> ink(size.pixels(), 0.0F);
+Plane<float> ink_of(const std::vector<Segment>& segments, Size size, double width_px) {
+    Plane<float> ink(size.pixels(), 0.0F);
     const auto half = static_cast<float>(0.5 * width_px);
     for (const Segment& segment : segments) {
         const Vec2f along = segment.b - segment.a;
@@ -151,7 +150,7 @@ TEST(MeshLines, LookTheSameFromEdgesAndFromCrossings) {
         set(settings, "lattice", "4");
         Drawing drawing;
         render(scene, *tracer, settings, {}, {}, nullptr, &drawing);
-        const std::vector<float> expected = ink_of(drawing.segments, settings.size, width);
+        const Plane<float> expected = ink_of(drawing.segments, settings.size, width);
         for (const char* q : {"1", "2", "3"}) {
             SCOPED_TRACE("width " + std::to_string(width) + ", q = " + q);
             set(settings, "lattice", q);
@@ -335,7 +334,7 @@ TEST(LinePlanes, SayWhatLineAPixelShows) {
                          distance, [](float d) { return std::isfinite(d); })));
     for (const Channel& channel : film.channels().channels) {
         if (!channel.name.starts_with("line.id")) continue;
-        const auto& ids = std::get<std::vector<std::uint32_t>>(channel.values);
+        const auto& ids = std::get<Plane<std::uint32_t>>(channel.values);
         const std::uint32_t wanted = channel.name == "line.id.near" ? 1 : 0;
         EXPECT_EQ(ids[at({64, 64}, 12, 32)], wanted) << channel.name;
     }

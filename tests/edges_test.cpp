@@ -56,7 +56,7 @@ struct Curve {
 
 /// Compares the ink across the curve, row by row or column by column, with the ink of a band whose
 /// middle is the curve: how far apart their centroids are, at the most.
-double worst_offset(const std::vector<float>& ink, Size size, const Curve& curve, double width) {
+double worst_offset(const Plane<float>& ink, Size size, const Curve& curve, double width) {
     double worst = 0.0;
     for (int k = 0; k < 360; k += 3) {
         const double dx = std::cos(k * kDegrees);
@@ -216,10 +216,10 @@ TEST(LinesAtTheBorder, ReachInFromOutside) {
 /// form.
 std::vector<bool> away_from_junctions(const Film& film, double h) {
     const Size size = film.size();
-    const std::vector<std::uint32_t>* ids = nullptr;
+    const Plane<std::uint32_t>* ids = nullptr;
     for (const Channel& channel : film.channels().channels) {
         if (channel.name == "id.primitive") {
-            ids = &std::get<std::vector<std::uint32_t>>(channel.values);
+            ids = &std::get<Plane<std::uint32_t>>(channel.values);
         }
     }
     std::vector<bool> away(size.pixels());
@@ -286,7 +286,7 @@ INSTANTIATE_TEST_SUITE_P(OfMetric, PapersLook, testing::Values("linear", "power:
 // Lines denser than they are wide
 
 /// Spheres side by side in a square of 100 x 100, in a picture of `side` pixels.
-std::vector<float> ink_of_packed_spheres(int side, double density, double width_px = 3.0) {
+Plane<float> ink_of_packed_spheres(int side, double density, double width_px = 3.0) {
     std::mt19937 random(3);
     std::vector<Sphere> spheres;
     for (int k = 0; k < 20000; ++k) {
@@ -313,7 +313,7 @@ TEST(DenseLines, BecomeAToneHoweverSmallThePicture) {
 }
 
 TEST(DenseLines, KeepTheirWidthWhereThereIsRoom) {
-    const std::vector<float> sparse = ink_of_packed_spheres(1400, 0.75, 1.5);
+    const Plane<float> sparse = ink_of_packed_spheres(1400, 0.75, 1.5);
     EXPECT_EQ(sparse, ink_of_packed_spheres(1400, 1.0, 1.5));
 }
 
@@ -470,8 +470,8 @@ TEST(Picture, OfLocatedLinesIsTheSameForTheScreenAloneAndWithNumbers) {
     EXPECT_LE(largest, 1);
 }
 
-std::vector<float> halved(const std::vector<float>& large, Size size) {
-    std::vector<float> small(size.pixels());
+Plane<float> halved(const Plane<float>& large, Size size) {
+    Plane<float> small(size.pixels(), 0.0F);
     const Size from{2 * size.width, 2 * size.height};
     for (int y = 0; y < size.height; ++y) {
         for (int x = 0; x < size.width; ++x) {

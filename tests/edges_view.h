@@ -41,14 +41,14 @@ inline std::size_t at(Size size, int x, int y) {
            static_cast<std::size_t>(x);
 }
 
-inline double mean_difference(const std::vector<float>& a, const std::vector<float>& b) {
+inline double mean_difference(const Plane<float>& a, const Plane<float>& b) {
     EXPECT_EQ(a.size(), b.size());
     double sum = 0.0;
     for (std::size_t k = 0; k < a.size(); ++k) sum += std::abs(a[k] - b[k]);
     return sum / static_cast<double>(a.size());
 }
 
-inline double mean(const std::vector<float>& values) {
+inline double mean(const Plane<float>& values) {
     double sum = 0.0;
     for (const float value : values) sum += value;
     return sum / static_cast<double>(values.size());

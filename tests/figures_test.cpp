@@ -26,9 +26,9 @@ Film draw(const std::vector<Object>& objects, const Settings& settings) {
 }
 
 /// Line strengths of a picture, row by row.
-const std::vector<float>& strengths(const Film& film) {
+const Plane<float>& strengths(const Film& film) {
     for (const Channel& channel : film.channels().channels) {
-        if (channel.name == "line.A") return std::get<std::vector<float>>(channel.values);
+        if (channel.name == "line.A") return std::get<Plane<float>>(channel.values);
     }
     throw std::logic_error("no such plane");
 }

@@ -196,11 +196,11 @@ double mean_error(const DisplayImage& a, const DisplayImage& b) {
 }
 
 template <class T>
-std::vector<T> read_exr_plane(const fs::path& file, const char* name, Imf::PixelType type) {
+Plane<T> read_exr_plane(const fs::path& file, const char* name, Imf::PixelType type) {
     Imf::InputFile exr(file.c_str());
     const auto window = exr.header().dataWindow();
     const auto width = static_cast<std::size_t>(window.max.x + 1);
-    std::vector<T> values(width * static_cast<std::size_t>(window.max.y + 1));
+    Plane<T> values(width * static_cast<std::size_t>(window.max.y + 1));
     Imf::FrameBuffer frame;
     frame.insert(name, Imf::Slice(type, reinterpret_cast<char*>(values.data()), sizeof(T),
                                   sizeof(T) * width));
@@ -209,19 +209,19 @@ std::vector<T> read_exr_plane(const fs::path& file, const char* name, Imf::Pixel
     return values;
 }
 
-std::vector<float> random_floats(std::size_t count, float from, float to) {
+Plane<float> random_floats(std::size_t count, float from, float to) {
     std::mt19937 generator(11);
     std::uniform_real_distribution<float> value(from, to);
-    std::vector<float> values(count);
+    Plane<float> values(count);
     std::generate(values.begin(), values.end(), [&] { return value(generator); });
     return values;
 }
 
 ChannelImage channel_image(Size size) {
     std::mt19937 generator(13);
-    std::vector<std::uint32_t> ids(size.pixels());
+    Plane<std::uint32_t> ids(size.pixels());
     std::generate(ids.begin(), ids.end(), [&] { return static_cast<std::uint32_t>(generator()); });
-    std::vector<float> depth = random_floats(size.pixels(), 1, 1e6F);
+    Plane<float> depth = random_floats(size.pixels(), 1, 1e6F);
     depth.front() = std::numeric_limits<float>::infinity();
     return {size,
             {{"R", random_floats(size.pixels(), 0, 4)},
@@ -231,7 +231,7 @@ ChannelImage channel_image(Size size) {
              {"id.primitive", ids}}};
 }
 
-const std::vector<float>& floats(const ChannelImage& image, std::size_t channel) {
+const Plane<float>& floats(const ChannelImage& image, std::size_t channel) {
     return std::get<0>(image.channels[channel].values);
 }
 

@@ -69,7 +69,7 @@ double line_error(int angle_deg, int rings, const Metric& metric) {
     settings.rings = rings;
     settings.metric = metric;
     const Film film = draw(scene, settings);
-    const std::vector<float>& strength = plane(film, "line.A");
+    const Plane<float>& strength = plane(film, "line.A");
 
     const double a = angle * std::numbers::pi / 180.0;
     double sum = 0.0;

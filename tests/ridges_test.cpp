@@ -116,9 +116,9 @@ struct TurnedEllipsoid {
     }
 };
 
-const std::vector<float>& strengths(const Film& film) {
+const Plane<float>& strengths(const Film& film) {
     for (const Channel& channel : film.channels().channels) {
-        if (channel.name == "line.A") return std::get<std::vector<float>>(channel.values);
+        if (channel.name == "line.A") return std::get<Plane<float>>(channel.values);
     }
     throw std::logic_error("no such plane");
 }

@@ -461,8 +461,8 @@ TEST(DirectLines, AreNotChangedByMirrorsAndGlass) {
     ASSERT_FALSE(at_level(specular.drawing, 1).empty());
     ASSERT_FALSE(at_level(specular.drawing, 2).empty());
     EXPECT_EQ(keys(at_level(specular.drawing, 0)), keys(plain.drawing.segments));
-    const std::vector<float>& ink = plane(specular.film, "line.A");
-    const std::vector<float>& expected = plane(plain.film, "line.A");
+    const Plane<float>& ink = plane(specular.film, "line.A");
+    const Plane<float>& expected = plane(plain.film, "line.A");
     for (std::size_t k = 0; k < ink.size(); ++k) ASSERT_NEAR(ink[k], expected[k], 1e-6);
 }
 

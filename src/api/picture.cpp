@@ -33,7 +33,7 @@ std::span<const std::uint8_t> Picture::rgba() const {
 
 std::span<const float> Picture::channel(std::string_view name) const {
     for (const ink::Channel& channel : impl_->film.channels().channels) {
-        const auto* values = std::get_if<std::vector<float>>(&channel.values);
+        const auto* values = std::get_if<ink::Plane<float>>(&channel.values);
         if (channel.name == name && values != nullptr) return *values;
     }
     return {};

@@ -8,6 +8,8 @@
 #include <variant>
 #include <vector>
 
+#include "base/plane_memory.h"
+
 namespace ink {
 
 struct Size {
@@ -35,7 +37,24 @@ struct UninitializedAllocator : std::allocator<T> {
         ::new (static_cast<void*>(at)) U(std::forward<Arguments>(arguments)...);
     }
 };
-using Pixels = std::vector<std::uint32_t, UninitializedAllocator<std::uint32_t>>;
+
+/// The same, from memory that goes from picture to picture.
+template <class T>
+struct PlaneAllocator : UninitializedAllocator<T> {
+    template <class U>
+    struct rebind {
+        using other = PlaneAllocator<U>;
+    };
+    T* allocate(std::size_t count) { return static_cast<T*>(take_plane_memory(count * sizeof(T))); }
+    void deallocate(T* plane, std::size_t count) noexcept {
+        give_plane_memory(plane, count * sizeof(T));
+    }
+};
+
+/// A value for each pixel of a picture. Uninitialised unless told what to hold.
+template <class T>
+using Plane = std::vector<T, PlaneAllocator<T>>;
+using Pixels = Plane<std::uint32_t>;
 
 /// A finished picture for the screen: R, G, B, A bytes a pixel, rows from the top, sRGB-encoded
 /// colour, straight (not premultiplied) alpha.
@@ -47,7 +66,7 @@ struct DisplayImage {
 /// One named plane of a float or integer image, rows from the top.
 struct Channel {
     std::string name;  ///< as EXR readers know it: "R", "Z", "N.X", "id.primitive"
-    std::variant<std::vector<float>, std::vector<std::uint32_t>> values;
+    std::variant<Plane<float>, Plane<std::uint32_t>> values;
 };
 
 /// A picture as numbers: linear colour in R, G, B, A (premultiplied), and AOVs.

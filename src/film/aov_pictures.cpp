@@ -12,7 +12,7 @@ namespace ink {
 
 namespace {
 
-using Floats = std::vector<float>;
+using Floats = Plane<float>;
 
 std::uint32_t pack(float r, float g, float b) {
     const auto byte = [](float v) {
@@ -37,7 +37,7 @@ std::uint32_t hashed_color(std::uint32_t id) {
     return pack(channel(0), channel(8), channel(16));
 }
 
-DisplayImage id_picture(Size size, const std::vector<std::uint32_t>& ids) {
+DisplayImage id_picture(Size size, const Plane<std::uint32_t>& ids) {
     DisplayImage image{size, Pixels(ids.size())};
     std::ranges::transform(ids, image.pixels.begin(), hashed_color);
     return image;
@@ -125,9 +125,9 @@ class PictureMaker {
 
   private:
     template <class T>
-    const std::vector<T>* find(std::string_view name) const {
+    const Plane<T>* find(std::string_view name) const {
         for (const Channel& channel : channels_.channels) {
-            if (channel.name == name) return std::get_if<std::vector<T>>(&channel.values);
+            if (channel.name == name) return std::get_if<Plane<T>>(&channel.values);
         }
         return nullptr;
     }

@@ -6,12 +6,21 @@
 #include <utility>
 #include <variant>
 
+#include <hwy/cache_control.h>
+#include <hwy/highway.h>
+
 #include "base/multiversion.h"
 #include "film/srgb_bytes.h"
 
 namespace ink {
 
 namespace {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+// Four lanes are what every processor has.
+template <class T>
+constexpr hn::FixedTag<T, kBlockSide> kRow;
 
 /// srgb_encode without branches or pow: 1.055 x^(1/2.4) - 0.055 is a power of the fourth root,
 /// 1.055 y^(5/3) - 0.055, fitted by a Chebyshev polynomial over the curve's range. Within 2e-6.
@@ -211,6 +220,8 @@ ColorPacket constant(Color color, float alpha) {
             Lanes<float>::filled(color.b * alpha), Lanes<float>::filled(alpha)};
 }
 
+constexpr std::array kChannels{&ColorPacket::r, &ColorPacket::g, &ColorPacket::b, &ColorPacket::a};
+
 /// Copies the pixels of a block that lie on the film.
 template <class T>
 void copy_block(Size size, int x, int y, const Lanes<T>& block, T* plane) {
@@ -230,6 +241,58 @@ void copy_block(Size size, int x, int y, const Lanes<T>& block, T* plane) {
         row += width;
         from += kBlockSide;
     }
+}
+
+/// lay_over on a plane: where there is no ink, x * 1 + 0 is x.
+INKTRACE_INLINE void lay_on_plane(Size size, int x, int y, const Lanes<float>& alpha,
+                                  const Lanes<float>& ink, float* plane) {
+    const auto width = static_cast<std::size_t>(size.width);
+    float* row = plane + static_cast<std::size_t>(y) * width + static_cast<std::size_t>(x);
+    const int columns = std::min(kBlockSide, size.width - x);
+    const int rows = std::min(kBlockSide, size.height - y);
+    const auto lay = [&](int j, int i) {
+        const int lane = j * kBlockSide + i;
+        row[i] = row[i] * (1.0F - alpha[lane]) + ink[lane];
+    };
+    for (int j = 0; j < rows; ++j, row += width) {
+        if (columns == kBlockSide) {
+            for (int i = 0; i < kBlockSide; ++i) lay(j, i);
+        } else {
+            for (int i = 0; i < columns; ++i) lay(j, i);
+        }
+    }
+}
+
+/// copy_block of blocks side by side, row after row. Whole cache lines go to memory past the
+/// caches, which otherwise read what is then overwritten; whoever is to see them waits for
+/// finish_rows().
+template <class T>
+void copy_blocks(Size size, int x, int y, std::span<const Lanes<T>* const> blocks, T* plane) {
+    const auto width = static_cast<std::size_t>(size.width);
+    T* row = plane + static_cast<std::size_t>(y) * width + static_cast<std::size_t>(x);
+    const auto whole =
+        std::min(blocks.size(), static_cast<std::size_t>((size.width - x) / kBlockSide));
+    constexpr std::size_t kLine = 64 / (kBlockSide * sizeof(T));  // blocks to a cache line
+    constexpr std::size_t kLarge = std::size_t{1} << 20;  // a picture of less may stay in a cache
+    const bool large = size.pixels() * sizeof(T) >= kLarge;
+    for (int j = 0; j < std::min(kBlockSide, size.height - y); ++j, row += width) {
+        const auto values = [&](std::size_t k) {
+            return hn::Load(kRow<T>, blocks[k]->data() + j * kBlockSide);
+        };
+        for (std::size_t k = 0; k < whole;) {
+            T* const to = row + k * kBlockSide;
+            if (large && reinterpret_cast<std::uintptr_t>(to) % 64 == 0 && k + kLine <= whole) {
+                for (std::size_t n = 0; n < kLine; ++n) {
+                    hn::Stream(values(k + n), kRow<T>, to + n * kBlockSide);
+                }
+                k += kLine;
+            } else {
+                hn::StoreU(values(k++), kRow<T>, to);
+            }
+        }
+    }
+    if (whole == blocks.size()) return;
+    copy_block(size, x + static_cast<int>(whole) * kBlockSide, y, *blocks[whole], plane);
 }
 
 /// The other way; pixels beyond the film's edge are left as they are.
@@ -259,7 +322,9 @@ Film::Film(Size size, const FilmSettings& settings) : size_(size), settings_(set
     channels_.size = size;
     if (settings.display) display_.pixels.resize(size.pixels());
     if (settings.linear) {
-        for (const char* name : {"R", "G", "B", "A"}) add_plane<float>(name);
+        for (const char* name : {"R", "G", "B", "A"}) {
+            channels_.channels.push_back({name, Plane<float>(size.pixels())});
+        }
     }
 
     const ColorPacket background =
@@ -300,6 +365,41 @@ void Film::put(int x, int y, const ColorPacket& shaded) {
     store(x, y, block);
 }
 
+void Film::finish_rows() { hwy::FlushStream(); }
+
+void Film::put_row(int x, int y, std::span<const ColorPacket* const> shaded) {
+    constexpr std::size_t kMost = 16;  // so many stay in the nearest cache
+    for (; !shaded.empty(); x += static_cast<int>(kMost) * kBlockSide) {
+        const std::size_t count = std::min(kMost, shaded.size());
+        std::array<const ColorPacket*, kMost> colors;
+        for (std::size_t k = 0; k < count; ++k) {
+            colors[k] = settings_.compose == Compose::lines ? &paper_ : shaded[k];
+        }
+        if (settings_.linear) {
+            std::array<const Lanes<float>*, kMost> blocks;
+            for (std::size_t c = 0; c < kChannels.size(); ++c) {
+                for (std::size_t k = 0; k < count; ++k) {
+                    const ColorPacket* const block =
+                        colors[k] == nullptr ? &background_.linear : colors[k];
+                    blocks[k] = &(block->*kChannels[c]);
+                }
+                copy_blocks<float>(size_, x, y, std::span(blocks).first(count), linear_plane(c));
+            }
+        }
+        if (settings_.display) {
+            std::array<Lanes<std::uint32_t>, kMost> bytes;
+            std::array<const Lanes<std::uint32_t>*, kMost> blocks;
+            for (std::size_t k = 0; k < count; ++k) {
+                blocks[k] = colors[k] == nullptr ? &background_.display : &bytes[k];
+                if (colors[k] != nullptr) encode_bytes(*colors[k], bytes[k]);
+            }
+            copy_blocks<std::uint32_t>(size_, x, y, std::span(blocks).first(count),
+                                       display_.pixels.data());
+        }
+        shaded = shaded.subspan(count);
+    }
+}
+
 /// Where there are no lines, nothing needs to go through the blend space.
 void Film::finish_shaded(const ColorPacket& shaded, Block& block) const {
     const bool covered = settings_.compose == Compose::lines;
@@ -333,31 +433,21 @@ void Film::store(int x, int y, const Block& block) {
 }
 
 void Film::put_pixel(int x, int y, const std::array<float, 4>& shaded) {
-    const int x0 = x - x % kBlockSide;
-    const int y0 = y - y % kBlockSide;
-    const int lane = y % kBlockSide * kBlockSide + x % kBlockSide;
     ColorPacket one{};
-    one.r[lane] = shaded[0];
-    one.g[lane] = shaded[1];
-    one.b[lane] = shaded[2];
-    one.a[lane] = shaded[3];
+    one.r[0] = shaded[0];
+    one.g[0] = shaded[1];
+    one.b[0] = shaded[2];
+    one.a[0] = shaded[3];
     Block finished;
     finish_shaded(one, finished);
-    if (!settings_.linear) {
-        if (settings_.display) {
-            const auto row = static_cast<std::size_t>(y) * static_cast<std::size_t>(size_.width);
-            display_.pixels[row + static_cast<std::size_t>(x)] = finished.display[lane];
-        }
-        return;
-    }
-    Block all{};
-    load(x0, y0, all);
-    all.display[lane] = finished.display[lane];
-    all.linear.r[lane] = finished.linear.r[lane];
-    all.linear.g[lane] = finished.linear.g[lane];
-    all.linear.b[lane] = finished.linear.b[lane];
-    all.linear.a[lane] = finished.linear.a[lane];
-    store(x0, y0, all);
+    const std::size_t at = static_cast<std::size_t>(y) * static_cast<std::size_t>(size_.width) +
+                           static_cast<std::size_t>(x);
+    if (settings_.display) display_.pixels[at] = finished.display[0];
+    if (!settings_.linear) return;
+    linear_plane(0)[at] = finished.linear.r[0];
+    linear_plane(1)[at] = finished.linear.g[0];
+    linear_plane(2)[at] = finished.linear.b[0];
+    linear_plane(3)[at] = finished.linear.a[0];
 }
 
 void Film::lay_ink(int x, int y, const BlockInk& ink) {
@@ -372,6 +462,7 @@ void Film::lay_ink(int x, int y, const BlockInk& ink) {
         }
         return copy_block(size_, x, y, below.display, display_.pixels.data());
     }
+    if (plain_linear()) return lay_linear_ink(x, y, ink);
     below = {};
     load(x, y, below);
     ColorPacket colors = in_blend_space(below);
@@ -390,12 +481,30 @@ void Film::lay_ink(int x, int y, const BlockInk& ink) {
     store(x, y, block);
 }
 
+void Film::lay_linear_ink(int x, int y, const BlockInk& ink) {
+    const auto lay = [&](std::size_t plane, const Lanes<float>& own) {
+        lay_on_plane(size_, x, y, ink.alpha, own, linear_plane(plane));
+    };
+    const std::array<float, 3> color =
+        ink.color ? std::array{ink.color->r, ink.color->g, ink.color->b} : std::array<float, 3>{};
+    for (std::size_t c = 0; c < color.size(); ++c) {
+        Lanes<float> own;
+        if (ink.color) {
+            for (int i = 0; i < kLanes; ++i) own[i] = ink.alpha[i] * color[c];
+        } else {
+            std::copy_n(ink.colors[c], kLanes, own.data());
+        }
+        lay(c, own);
+    }
+    lay(color.size(), ink.alpha);
+}
+
 void Film::load(int x, int y, Block& block) const {
     if (settings_.display) load_block(size_, x, y, display_.pixels.data(), block.display);
     if (!settings_.linear) return;
     std::size_t plane = 0;
     for (auto* lanes : {&block.linear.r, &block.linear.g, &block.linear.b, &block.linear.a}) {
-        const auto& values = std::get<std::vector<float>>(channels_.channels[plane++].values);
+        const auto& values = std::get<Plane<float>>(channels_.channels[plane++].values);
         load_block(size_, x, y, values.data(), *lanes);
     }
 }
@@ -414,8 +523,8 @@ ColorPacket Film::in_blend_space(const Block& block) const {
 }
 
 template <class T>
-void Film::put_row(std::size_t plane, int x, int y, int count, const T* values) {
-    auto& target = std::get<std::vector<T>>(channels_.channels[plane].values);
+void Film::put_values(std::size_t plane, int x, int y, int count, const T* values) {
+    auto& target = std::get<Plane<T>>(channels_.channels[plane].values);
     const std::size_t first = static_cast<std::size_t>(y) * static_cast<std::size_t>(size_.width) +
                               static_cast<std::size_t>(x);
     std::copy_n(values, std::min(count, size_.width - x),
@@ -424,21 +533,20 @@ void Film::put_row(std::size_t plane, int x, int y, int count, const T* values) 
 
 template <class T>
 std::size_t Film::add_plane(std::string name) {
-    channels_.channels.push_back({std::move(name), std::vector<T>(size_.pixels())});
+    channels_.channels.push_back({std::move(name), Plane<T>(size_.pixels(), T{})});
     return channels_.channels.size() - 1;
 }
 
 template <class T>
 void Film::put_plane(std::size_t plane, int x, int y, const Lanes<T>& values) {
-    copy_block(size_, x, y, values,
-               std::get<std::vector<T>>(channels_.channels[plane].values).data());
+    copy_block(size_, x, y, values, std::get<Plane<T>>(channels_.channels[plane].values).data());
 }
 
 template std::size_t Film::add_plane<float>(std::string);
 template std::size_t Film::add_plane<std::uint32_t>(std::string);
 template void Film::put_plane<float>(std::size_t, int, int, const Lanes<float>&);
 template void Film::put_plane<std::uint32_t>(std::size_t, int, int, const Lanes<std::uint32_t>&);
-template void Film::put_row<float>(std::size_t, int, int, int, const float*);
-template void Film::put_row<std::uint32_t>(std::size_t, int, int, int, const std::uint32_t*);
+template void Film::put_values<float>(std::size_t, int, int, int, const float*);
+template void Film::put_values<std::uint32_t>(std::size_t, int, int, int, const std::uint32_t*);
 
 }  // namespace ink

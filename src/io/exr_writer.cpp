@@ -43,7 +43,7 @@ bool is_color(const Channel& channel) {
 }
 
 template <class T>
-Imf::Slice slice(Imf::PixelType type, const std::vector<T>& values, Size size) {
+Imf::Slice slice(Imf::PixelType type, const Plane<T>& values, Size size) {
     assert(values.size() == size.pixels());
     // OpenEXR only reads from a frame buffer that it writes to a file.
     auto* const base = reinterpret_cast<char*>(const_cast<T*>(values.data()));
@@ -68,7 +68,7 @@ class Planes {
         return slice(Imf::HALF, halves_.emplace_back(numbers.begin(), numbers.end()), size);
     }
 
-    std::deque<std::vector<half>> halves_;  // a deque, because slices point into its elements
+    std::deque<Plane<half>> halves_;  // a deque, because slices point into its elements
     Imf::FrameBuffer frame_;
 };
 

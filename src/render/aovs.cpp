@@ -58,10 +58,10 @@ void AovWriter::put_lines(int x0, int y0, int x1, int y1, const LinePlanes& line
     for (int y = y0; y < y1; ++y) {
         const std::size_t k = lines.index(0, y - y0);
         std::size_t plane = *line_planes_;
-        film_.put_row(plane++, x0, y, x1 - x0, lines.distance().data() + k);
+        film_.put_values(plane++, x0, y, x1 - x0, lines.distance().data() + k);
         for (const auto* values :
              {&lines.type(), &lines.near_id(), &lines.far_id(), &lines.level()}) {
-            film_.put_row(plane++, x0, y, x1 - x0, values->data() + k);
+            film_.put_values(plane++, x0, y, x1 - x0, values->data() + k);
         }
     }
 }

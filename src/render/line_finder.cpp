@@ -312,35 +312,44 @@ void LineFinder::put_pixels(const Tile& tile) {
     const Timer phase(stats_.film_ms);
     const Size size = edges_.pipeline.film.size();
     for (int y = std::max(tile.y0, 0); y < std::min(tile.y1, size.height); y += kBlockSide) {
-        for (int x = std::max(tile.x0, 0); x < std::min(tile.x1, size.width); x += kBlockSide) {
-            put_block(x, y);
+        const int x0 = std::max(tile.x0, 0);
+        block_row_.clear();
+        mixed_.clear();
+        mixed_.reserve(static_cast<std::size_t>(tile.x1 - tile.x0));  // what points to them stays
+        for (int x = x0; x < std::min(tile.x1, size.width); x += kBlockSide) {
+            block_row_.push_back(pixel_block(x, y));
             if (edges_.pipeline.aovs) put_aovs({x, y});
         }
+        edges_.pipeline.film.put_row(x0, y, block_row_);
     }
+    Film::finish_rows();
     if (smooths_) keep_fringe(tile);
 }
 
-/// The block of pixels at (x, y): one lattice block, or the mean over q x q of them.
-void LineFinder::put_block(int x, int y) {
-    Film& film = edges_.pipeline.film;
+/// The block of pixels at (x, y): one lattice block, or the mean over q x q of them. Null if it is
+/// background.
+const ColorPacket* LineFinder::pixel_block(int x, int y) {
     const int q = edges_.q;
     const int i0 = (x * q - grid_.x0) / kBlockSide;
     const int j0 = (y * q - grid_.y0) / kBlockSide;
     const ColorPacket& background = edges_.pipeline.shader.background();
     std::array<const ColorPacket*, kMostPointsInPixel> blocks;
     bool any = false;
-    for (int n = 0; n < q * q; ++n) {
-        const std::uint32_t k = block_index(i0 + n % q, j0 + n / q);
-        blocks[static_cast<std::size_t>(n)] = k == kEmptyBlock ? &background : &colors_[k];
-        any |= k != kEmptyBlock && seen_[k] != 0;
+    std::size_t count = 0;
+    for (int j = 0; j < q; ++j) {
+        for (int i = 0; i < q; ++i) {
+            const std::uint32_t k = block_index(i0 + i, j0 + j);
+            blocks[count++] = k == kEmptyBlock ? &background : &colors_[k];
+            any |= k != kEmptyBlock && seen_[k] != 0;
+        }
     }
     const bool changes = smooths_ && smoothing_.changes(x, y);
-    if (!any && !changes) return film.put_background(x, y);
-    if (q == 1 && !changes) return film.put(x, y, *blocks[0]);
+    if (!any && !changes) return nullptr;
+    if (q == 1 && !changes) return blocks[0];
 
-    ColorPacket mean = q == 1 ? *blocks[0] : mean_of_blocks(blocks, q);
+    ColorPacket& mean = mixed_.emplace_back(q == 1 ? *blocks[0] : mean_of_blocks(blocks, q));
     if (changes) smoothing_.apply(x, y, mean);
-    film.put(x, y, mean);
+    return &mean;
 }
 
 /// Linear, premultiplied colour of a pixel of the tile, before smoothing.

@@ -133,7 +133,7 @@ class LineFinder {
     void keep_for_ridges(const Tile& tile);
     void shade(std::size_t first, std::size_t count);
     void put_pixels(const Tile& tile);
-    void put_block(int x, int y);
+    const ColorPacket* pixel_block(int x, int y);
     void keep_fringe(const Tile& tile);
     void put_aovs(Block block);
     void find_lines();
@@ -240,6 +240,8 @@ class LineFinder {
     std::vector<NormalPacket> normals_;
     std::vector<ColorPacket> colors_;
     std::vector<std::uint8_t> seen_;
+    std::vector<const ColorPacket*> block_row_;  ///< of pixels, on their way to the film
+    std::vector<ColorPacket> mixed_;             ///< those of them that differ from the lattice's
     std::vector<ClosedPoint> closed_;
     std::vector<HitPacket> point_hits_;
     std::vector<SuspectEdge> suspects_;
