@@ -14,7 +14,7 @@ namespace ink {
 
 namespace {
 
-constexpr int kProfileEntries = 512;
+constexpr int kProfileSteps = 512;
 
 INKTRACE_MULTIVERSION
 void cover(const Lanes<float>& distance, const Lanes<float>& nx, const Lanes<float>& ny, float half,
@@ -73,8 +73,9 @@ InkTile::InkTile(const InkSettings& settings) : settings_(settings) {
         layer.opacity = style.opacity;
     }
     if (settings.profile.kind == Metric::Kind::solid) return;
-    for (int k = 0; k < kProfileEntries; ++k) {
-        profile_.push_back(straight_edge_strength(settings.profile, (k + 0.5) / kProfileEntries));
+    for (int k = 0; k <= kProfileSteps; ++k) {
+        const double u = static_cast<double>(k) / kProfileSteps;
+        profile_.push_back(straight_edge_strength(settings.profile, u));
     }
     profile_.push_back(0.0F);
 }
@@ -122,23 +123,29 @@ void InkTile::draw_waiting() {
 
 /// Clears it.
 void InkTile::start(Layer& layer) {
-    const std::size_t stride = across_ * kBlockSide + kBlockSide - 1;
-    const std::size_t pixels = stride * (blocks() / across_ * kBlockSide + kBlockSide - 1);
-    layer.coverage.assign(blocks(), {});
-    layer.narrow.assign(pixels, 0.0F);
     // What lies on top matters only where inks differ.
     const bool alone = layers_.size() == 1;
+    layer.coverage.assign(blocks(), {});
     if (!alone) layer.t.assign(blocks(), Lanes<float>::filled(kInfinity));
-    if (!alone) layer.narrow_t.assign(pixels, kInfinity);
-    layer.planes = {static_cast<float>(x0_) + 0.5F,
-                    static_cast<float>(y0_) + 0.5F,
-                    across_,
-                    layer.coverage.data(),
-                    alone ? nullptr : layer.t.data(),
-                    touched_.data(),
-                    layer.narrow.data(),
-                    alone ? nullptr : layer.narrow_t.data(),
-                    stride};
+    layer.planes = {};
+    layer.planes.x0 = static_cast<float>(x0_) + 0.5F;
+    layer.planes.y0 = static_cast<float>(y0_) + 0.5F;
+    layer.planes.across = across_;
+    layer.planes.coverage = layer.coverage.data();
+    layer.planes.t = alone ? nullptr : layer.t.data();
+    layer.planes.touched = touched_.data();
+    if (profile_.empty()) {
+        const std::size_t stride = across_ * kBlockSide + kBlockSide - 1;
+        const std::size_t pixels = stride * (blocks() / across_ * kBlockSide + kBlockSide - 1);
+        layer.narrow.assign(pixels, 0.0F);
+        if (!alone) layer.narrow_t.assign(pixels, kInfinity);
+        layer.planes.narrow = layer.narrow.data();
+        layer.planes.narrow_t = alone ? nullptr : layer.narrow_t.data();
+        layer.planes.stride = stride;
+    } else {
+        layer.squared.assign(blocks(), Lanes<float>::filled(kInfinity));
+        layer.planes.squared = layer.squared.data();
+    }
     layer.used = true;
     empty_ = false;
 }
@@ -173,8 +180,10 @@ void InkTile::draw_faces(int x, int y, const Lanes<float>& distance, const Lanes
         cover(distance, nx, ny, 0.5F * width, inks);
     } else {
         for (int i = 0; i < kLanes; ++i) {
-            const float u = std::min(distance[i] / (0.5F * width), 1.0F);
-            inks[i] = profile_[static_cast<std::size_t>(u * kProfileEntries)];
+            const float place = std::min(distance[i] / (0.5F * width), 1.0F) * kProfileSteps;
+            const auto entry = static_cast<std::size_t>(place);
+            inks[i] = profile_[entry] +
+                      (profile_[entry + 1] - profile_[entry]) * (place - static_cast<float>(entry));
         }
     }
     const std::size_t k = index(x, y) / kLanes;
@@ -200,7 +209,11 @@ void InkTile::finish() {
     used_.clear();
     for (Layer& layer : layers_) {
         if (!layer.used) continue;
-        add_narrow(layer);
+        if (profile_.empty()) {
+            add_narrow(layer);
+        } else {
+            finish_soft(layer.planes, blocks(), profile_);
+        }
         used_.push_back(&layer);
     }
     alpha_.resize(blocks());

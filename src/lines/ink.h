@@ -120,6 +120,7 @@ class InkTile {
         std::vector<Lanes<float>> coverage;
         std::vector<Lanes<float>> t;  ///< of the nearest line that inks the pixel, if it matters
         std::vector<float> narrow, narrow_t;  ///< see InkPlanes
+        std::vector<Lanes<float>> squared;    ///< likewise
         InkPlanes planes{};                   ///< these, for strokes
     };
 
@@ -135,7 +136,7 @@ class InkTile {
     void finish_pixel(std::size_t k, std::span<const Layer* const> used);
 
     InkSettings settings_;
-    std::vector<float> profile_;  ///< of soft lines, as draw_soft() wants it
+    std::vector<float> profile_;  ///< of soft lines, as draw_soft() wants it; empty if solid
     std::vector<std::size_t> layer_of_style_;
     std::vector<Layer> layers_;
     InkBatch waiting_{};  ///< strokes

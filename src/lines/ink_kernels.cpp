@@ -105,12 +105,15 @@ class Band {
     /// From its middle line to the centres of a block's pixels from the i-th on; (x, y) is that of
     /// its first pixel.
     HWY_INLINE Number distance(float x, float y, int i) const {
+        return hn::Sqrt(squared_distance(x, y, i));
+    }
+    HWY_INLINE Number squared_distance(float x, float y, int i) const {
         const Number rx = hn::Sub(hn::Add(set(x), load(kBlockOffsets.x, i)), ax_);
         const Number ry = hn::Sub(hn::Add(set(y), load(kBlockOffsets.y, i)), ay_);
         const Number s = hn::Add(hn::Mul(rx, along_x_), hn::Mul(ry, along_y_));
         const Number across = hn::Sub(hn::Mul(ry, along_x_), hn::Mul(rx, along_y_));
         const Number beyond = hn::Max(hn::Max(hn::Neg(s), hn::Sub(s, length_)), hn::Zero(kFloats));
-        return hn::Sqrt(hn::Add(hn::Mul(across, across), hn::Mul(beyond, beyond)));
+        return hn::Add(hn::Mul(across, across), hn::Mul(beyond, beyond));
     }
 
   private:
@@ -135,17 +138,16 @@ HWY_INLINE void add_ink(Number ink, float t, const InkPlanes& planes, std::size_
     hn::Store(hn::Min(hn::Load(kFloats, nearest), at), kFloats, nearest);
 }
 
-/// Draws stroke `lane` of a batch: `ink_at(x, y, i)` is the ink of 4 x 4 pixels from the i-th on,
-/// (x, y) the centre of the first one.
-template <class InkAt>
-HWY_INLINE void draw_blocks(const InkBatch& batch, const Bands& bands, int lane,
-                            const InkAt& ink_at) {
+/// Calls `draw(x, y, k)` for each block that stroke `lane` of a batch may reach: (x, y) is the
+/// centre of its first pixel, k its index.
+template <class Draw>
+HWY_INLINE void for_each_block(const InkBatch& batch, const Bands& bands, int lane,
+                               const Draw& draw) {
     constexpr float kHalfBlock = 0.5F * (kBlockSide - 1);
     static_assert(kBlockSide == 4);
     const InkPlanes& planes = *batch.planes[static_cast<std::size_t>(lane)];
     const float ax = batch.strokes.ax[lane];
     const float ay = batch.strokes.ay[lane];
-    const float t = batch.strokes.t[lane];
     const float along_x = bands.along_x[lane];
     const float along_y = bands.along_y[lane];
     // How far a block's pixels reach from its middle, along the band and across it.
@@ -160,18 +162,29 @@ HWY_INLINE void draw_blocks(const InkBatch& batch, const Bands& bands, int lane,
             const float rx = x + kHalfBlock - ax;
             const float s = rx * along_x + ry * along_y;
             if (std::abs(ry * along_x - rx * along_y) > most || s < -most || s > last) continue;
-            const std::size_t k =
-                static_cast<std::size_t>(row) * planes.across + static_cast<std::size_t>(column);
-            std::uint8_t& touched = planes.touched[k];
-            if (touched == kFull) continue;
-            bool any = false;
-            bool full = true;
-            for (int i = 0; i < kLanes; i += kStep) {
-                add_ink(ink_at(x, y, i), t, planes, k, i, any, full);
-            }
-            touched = full ? kFull : static_cast<std::uint8_t>(touched | (any ? kTouched : 0));
+            draw(x, y,
+                 static_cast<std::size_t>(row) * planes.across + static_cast<std::size_t>(column));
         }
     }
+}
+
+/// Draws stroke `lane` of a batch: `ink_at(x, y, i)` is the ink of 4 x 4 pixels from the i-th on,
+/// (x, y) the centre of the first one.
+template <class InkAt>
+HWY_INLINE void draw_blocks(const InkBatch& batch, const Bands& bands, int lane,
+                            const InkAt& ink_at) {
+    const InkPlanes& planes = *batch.planes[static_cast<std::size_t>(lane)];
+    const float t = batch.strokes.t[lane];
+    for_each_block(batch, bands, lane, [&](float x, float y, std::size_t k) HWY_ATTR {
+        std::uint8_t& touched = planes.touched[k];
+        if (touched == kFull) return;
+        bool any = false;
+        bool full = true;
+        for (int i = 0; i < kLanes; i += kStep) {
+            add_ink(ink_at(x, y, i), t, planes, k, i, any, full);
+        }
+        touched = full ? kFull : static_cast<std::uint8_t>(touched | (any ? kTouched : 0));
+    });
 }
 
 /// As many rows of 4 pixels as make a vector, and back.
@@ -274,19 +287,64 @@ void draw_solid_batch(const InkBatch& batch) {
     }
 }
 
+/// Of a soft line: `u` is the distance from it over half its width, in [0, 1].
+HWY_INLINE Number profile_at(std::span<const float> profile, Number u) {
+    const Number place = hn::Mul(u, set(static_cast<float>(profile.size() - 2)));
+    const auto entry = hn::ConvertTo(kIntegers, place);
+    const Number from = hn::GatherIndex(kFloats, profile.data(), entry);
+    const Number to = hn::GatherIndex(kFloats, profile.data() + 1, entry);
+    const Number beyond = hn::Sub(place, hn::ConvertTo(kFloats, entry));
+    return hn::Add(from, hn::Mul(hn::Sub(to, from), beyond));
+}
+
 void draw_soft_batch(const InkBatch& batch, std::span<const float> profile) {
-    const Number entries = set(static_cast<float>(profile.size() - 1));
     Bands bands;
     make_bands<true>(batch, bands);
     for (int lane = 0; lane < batch.count; ++lane) {
         const Band band(batch.strokes, bands, lane);
-        const Number half = set(bands.half[lane]);
-        const Number strength = set(batch.strokes.strength[lane]);
-        draw_blocks(batch, bands, lane, [&](float x, float y, int i) HWY_ATTR {
-            const Number u = hn::Min(hn::Div(band.distance(x, y, i), half), set(1.0F));
-            const auto entry = hn::ConvertTo(kIntegers, hn::Mul(u, entries));
-            return hn::Mul(hn::GatherIndex(kFloats, profile.data(), entry), strength);
+        const float half = bands.half[lane];
+        if (half <= 0.0F) continue;
+        const Number per_half = set(1.0F / (half * half));
+        const auto squared_at = [&](float x, float y, int i) HWY_ATTR {
+            return hn::Mul(band.squared_distance(x, y, i), per_half);
+        };
+        if (batch.strokes.strength[lane] != 1.0F) {
+            const Number strength = set(batch.strokes.strength[lane]);
+            draw_blocks(batch, bands, lane, [&](float x, float y, int i) HWY_ATTR {
+                const Number u = hn::Sqrt(hn::Min(squared_at(x, y, i), set(1.0F)));
+                return hn::Mul(profile_at(profile, u), strength);
+            });
+            continue;
+        }
+        const InkPlanes& planes = *batch.planes[static_cast<std::size_t>(lane)];
+        const Number t = set(batch.strokes.t[lane]);
+        for_each_block(batch, bands, lane, [&](float x, float y, std::size_t k) HWY_ATTR {
+            for (int i = 0; i < kLanes; i += kStep) {
+                const Number squared = squared_at(x, y, i);
+                float* const least = planes.squared[k].data() + i;
+                hn::Store(hn::Min(hn::Load(kFloats, least), squared), kFloats, least);
+                const auto inked = hn::Lt(squared, set(1.0F));
+                if (hn::AllFalse(kFloats, inked)) continue;
+                planes.touched[k] |= kTouched;
+                if (planes.t == nullptr) continue;
+                float* const nearest = planes.t[k].data() + i;
+                const Number own = hn::IfThenElse(inked, t, set(kInfinity));
+                hn::Store(hn::Min(hn::Load(kFloats, nearest), own), kFloats, nearest);
+            }
         });
+    }
+}
+
+void finish_soft_blocks(const InkPlanes& planes, std::size_t blocks,
+                        std::span<const float> profile) {
+    for (std::size_t k = 0; k < blocks; ++k) {
+        if (planes.touched[k] == 0) continue;
+        for (int i = 0; i < kLanes; i += kStep) {
+            const Number squared = hn::Min(load(planes.squared[k], i), set(1.0F));
+            const Number ink = profile_at(profile, hn::Sqrt(squared));
+            float* const most = planes.coverage[k].data() + i;
+            hn::Store(hn::Max(hn::Load(kFloats, most), ink), kFloats, most);
+        }
     }
 }
 
@@ -335,6 +393,7 @@ namespace ink {
 HWY_EXPORT(draw_border_lanes);
 HWY_EXPORT(draw_solid_batch);
 HWY_EXPORT(draw_soft_batch);
+HWY_EXPORT(finish_soft_blocks);
 
 void draw_solid(const InkBatch& batch) { HWY_DYNAMIC_DISPATCH(draw_solid_batch)(batch); }
 
@@ -347,6 +406,10 @@ bool draw_borders(const Lanes<std::uint32_t>& codes, float reach, float half,
 
 void draw_soft(const InkBatch& batch, std::span<const float> profile) {
     HWY_DYNAMIC_DISPATCH(draw_soft_batch)(batch, profile);
+}
+
+void finish_soft(const InkPlanes& planes, std::size_t blocks, std::span<const float> profile) {
+    HWY_DYNAMIC_DISPATCH(finish_soft_blocks)(planes, blocks, profile);
 }
 
 }  // namespace ink

@@ -28,6 +28,9 @@ struct InkPlanes {
     float* narrow;
     float* narrow_t;     ///< null: not wanted
     std::size_t stride;  ///< pixels
+    /// Of soft strokes in full strength, from which all ink follows in the end: the least square of
+    /// a pixel's distance over half the width. Null where strokes are solid; then narrow is not.
+    Lanes<float>* squared;
 };
 inline constexpr std::uint8_t kTouched = 1, kFull = 2;
 
@@ -52,8 +55,10 @@ bool draw_borders(const Lanes<std::uint32_t>& codes, float reach, float half,
                   const Lanes<float>* depths, float behind, Lanes<float>& coverage,
                   Lanes<float>* nearest);
 
-/// Inks each pixel by the distance of its centre from the line: `profile` holds strengths for
-/// equal steps of distance from 0 to half the width, and a last 0 for all beyond.
+/// Inks each pixel by the distance of its centre from the line: `profile` holds strengths at equal
+/// steps of distance from 0 to half the width, between which they are straight, and one 0 more.
 void draw_soft(const InkBatch& batch, std::span<const float> profile);
+/// After all strokes.
+void finish_soft(const InkPlanes& planes, std::size_t blocks, std::span<const float> profile);
 
 }  // namespace ink
