@@ -1,12 +1,11 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <span>
-#include <vector>
 
 #include "base/image.h"
 #include "base/lanes.h"
-#include "base/memory.h"
 #include "base/vec.h"
 #include "scene/ids.h"
 
@@ -21,8 +20,7 @@ struct RidgeGrid {
         const auto size =
             static_cast<std::size_t>(width) * static_cast<std::size_t>(height) + kLanes;
         id.resize(size);
-        std::vector<std::span<float>*> planes{&nx, &ny, &nz, &t};
-        reserve_large(values_, planes.size() * size);
+        const std::array planes{&nx, &ny, &nz, &t};
         values_.resize(planes.size() * size);
         for (std::size_t k = 0; k < planes.size(); ++k) {
             *planes[k] = std::span(values_).subspan(k * size, size);
@@ -34,8 +32,7 @@ struct RidgeGrid {
     Vec2f first;    ///< where node (0, 0) is, pixels
     float spacing;  ///< pixels
 
-    std::vector<GeometryId, UninitializedAllocator<GeometryId>>
-        id;                       ///< kBackground also for what shall have no ridges
+    Plane<GeometryId> id;         ///< kBackground also for what shall have no ridges
     std::span<float> nx, ny, nz;  ///< shading normal, unit; of no meaning on the background
     std::span<float> t;           ///< distance along the ray, likewise
 
@@ -49,7 +46,7 @@ struct RidgeGrid {
     }
 
   private:
-    std::vector<float, UninitializedAllocator<float>> values_;  ///< of all planes, in large pages
+    Plane<float> values_;  ///< of all planes
 };
 
 }  // namespace ink

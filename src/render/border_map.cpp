@@ -37,9 +37,7 @@ BorderMap::BorderMap(Size size, float reach, bool depths)
       seen_(static_cast<std::size_t>(blocks_across_) *
             static_cast<std::size_t>((size.height + kBlockSide - 1) / kBlockSide)),
       codes_(seen_.size()),
-      depths_(depths ? seen_.size() : 0) {
-    use_large_pages(codes_.data(), codes_.size() * sizeof(codes_[0]));
-}
+      depths_(depths ? seen_.size() : 0) {}
 
 void BorderMap::put(int x, int y, const BorderPacket& borders, const Lanes<float>& t) {
     if (x < 0 || y < 0 || x >= size_.width || y >= size_.height) return;

@@ -6,7 +6,6 @@
 #include "accel/tracer.h"
 #include "base/image.h"
 #include "base/lanes.h"
-#include "base/memory.h"
 #include "lines/border_code.h"
 
 namespace ink {
@@ -33,9 +32,6 @@ class BorderMap {
     float reach() const { return reach_; }
 
   private:
-    template <class T>
-    using Plane = std::vector<Lanes<T>, UninitializedAllocator<Lanes<T>>>;
-
     std::size_t block(int x, int y) const {
         return static_cast<std::size_t>(y / kBlockSide) * static_cast<std::size_t>(blocks_across_) +
                static_cast<std::size_t>(x / kBlockSide);
@@ -45,8 +41,8 @@ class BorderMap {
     float reach_;
     int blocks_across_;
     std::vector<std::uint8_t> seen_;  ///< a block
-    Plane<std::uint32_t> codes_;
-    Plane<float> depths_;
+    Plane<Lanes<std::uint32_t>> codes_;
+    Plane<Lanes<float>> depths_;
 };
 
 }  // namespace ink

@@ -48,11 +48,13 @@ struct Edges {
     bool mends_lines() const {
         return find_lines && wanted.has(LineType::self_occlusion) && !balls_only;
     }
-    /// Whether lines are needed for more than their ink.
-    bool keeps_segments() const {
-        return mends_lines() || pipeline.lines.segments || pipeline.lines.drawing != nullptr ||
+    /// Whether anything asks for whole lines, and not only for their ink.
+    bool wants_segments() const {
+        return pipeline.lines.segments || pipeline.lines.drawing != nullptr ||
                (pipeline.aovs && pipeline.aovs->wants_line_planes());
     }
+    /// Whether tiles keep whole lines until all are found.
+    bool keeps_segments() const { return mends_lines() || wants_segments(); }
     bool wants_faces() const { return find_lines && has_meshes && wanted.has(LineType::mesh); }
     /// Whether the line where a face goes out of sight covers all that its edges behind it could
     /// ink, so that lines between faces need not end there.

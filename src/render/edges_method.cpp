@@ -98,14 +98,15 @@ LineDensity add_ridges(const Edges& edges, RidgeSearch& search, WorkLoop& loop, 
         const Timer timer(serial.lines_ms);
         const Timer phase(serial.ridges_ms);
         const LineMask others = mask_of(edges, found.tiles);
-        for (Segment& ridge : search.take(others)) {
+        const bool wants_segments = edges.wants_segments();
+        search.take(others, [&](Segment& ridge) {
             edges.apply_distance(ridge);
             TileLines& tile = found.tiles[edges.search_tile_at((ridge.a + ridge.b) * 0.5F)];
             const InkStroke stroke = make_ink_stroke(ridge, edges.style_of(ridge));
             density.add(stroke, edges.ink.styles[stroke.style].width_px * stroke.width_scale);
-            if (edges.keeps_segments()) tile.segments.push_back(ridge);
+            if (wants_segments) tile.segments.push_back(ridge);
             if (edges.draw_lines) tile.strokes.push_back(stroke);
-        }
+        });
     }
     for (double RenderStats::*const ms : {&RenderStats::lines_ms, &RenderStats::ridges_ms}) {
         stats.*ms += serial.*ms * loop.threads();  // the others wait
@@ -209,7 +210,7 @@ void add_hidden_strokes(const Edges& edges, FoundLines& found) {
         const Vec2f middle = (stroke.a + stroke.b) * 0.5F;
         TileLines& tile = found.tiles[edges.search_tile_at(middle)];
         tile.strokes.push_back(make_ink_stroke(stroke, edges.style_of(stroke)));
-        if (edges.keeps_segments()) tile.segments.push_back(stroke);
+        if (edges.wants_segments()) tile.segments.push_back(stroke);
     }
 }
 

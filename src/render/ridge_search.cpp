@@ -226,8 +226,11 @@ void RidgeSearch::find(WorkLoop& loop, RenderStats& stats) {
     }
 }
 
-std::vector<Segment> RidgeSearch::take(const LineMask& others) {
+std::vector<RidgePiece> RidgeSearch::pieces_beside(const LineMask& others) {
+    std::size_t most = 0;
+    for (const std::vector<RidgePiece>& band : found_) most += band.size();
     std::vector<RidgePiece> pieces;
+    pieces.reserve(most);
     for (const std::vector<RidgePiece>& band : found_) {
         for (const RidgePiece& piece : band) {
             if (!others.covers((piece.a + piece.b) * 0.5F)) pieces.push_back(piece);
@@ -236,20 +239,20 @@ std::vector<Segment> RidgeSearch::take(const LineMask& others) {
     drop_short_ridges(
         pieces, grid_.width,
         static_cast<float>(radius_of(pipeline_, per_pixel_)) / static_cast<float>(per_pixel_));
-    std::vector<Segment> segments(pieces.size());
-    for (std::size_t k = 0; k < pieces.size(); ++k) {
-        const RidgePiece& piece = pieces[k];
-        Segment& segment = segments[k];
-        segment.a = piece.a;
-        segment.b = piece.b;
-        segment.type = segment.type_at_b = LineType::ridge;
-        segment.strength = piece.strength;
-        segment.t = grid_.t[piece.node];
-        segment.left = segment.right = segment.owner = grid_.id[piece.node];
-        segment.left_at_b = segment.right_at_b = segment.owner;
-        segment.spans_cell = true;
-    }
-    return segments;
+    return pieces;
+}
+
+Segment RidgeSearch::segment_of(const RidgePiece& piece) const {
+    Segment segment;
+    segment.a = piece.a;
+    segment.b = piece.b;
+    segment.type = segment.type_at_b = LineType::ridge;
+    segment.strength = piece.strength;
+    segment.t = grid_.t[piece.node];
+    segment.left = segment.right = segment.owner = grid_.id[piece.node];
+    segment.left_at_b = segment.right_at_b = segment.owner;
+    segment.spans_cell = true;
+    return segment;
 }
 
 }  // namespace ink

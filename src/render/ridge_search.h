@@ -46,15 +46,23 @@ class RidgeSearch {
     std::size_t items() const { return strips_.size() + bands(); }
     /// After all tiles.
     void find(WorkLoop& loop, RenderStats& stats);
-    /// What was found, but for pieces so near to other lines that they would touch them, and for
-    /// what is shorter in all than the neighbourhood's radius: more often than not it is noise of
-    /// a mesh.
-    std::vector<Segment> take(const LineMask& others);
+    /// Calls `visit` with what was found, but for pieces so near to other lines that they would
+    /// touch them, and for what is shorter in all than the neighbourhood's radius: more often than
+    /// not it is noise of a mesh.
+    template <class Visit>
+    void take(const LineMask& others, const Visit& visit) {
+        for (const RidgePiece& piece : pieces_beside(others)) {
+            Segment segment = segment_of(piece);
+            visit(segment);
+        }
+    }
 
   private:
     /// Nodes [x0, x1) x [y0, y1) of the grid.
     using Nodes = Tile;
 
+    std::vector<RidgePiece> pieces_beside(const LineMask& others);
+    Segment segment_of(const RidgePiece& piece) const;
     Nodes nodes_of(const Tile& pixels) const;
     std::size_t bands() const;
     void cut_rim();
