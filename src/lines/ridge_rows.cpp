@@ -106,9 +106,12 @@ HWY_INLINE Number at(const RayRamp& ramp, Number i) {
     return hn::Add(hn::Set(kFloats, ramp.first), hn::Mul(hn::Set(kFloats, ramp.step), i));
 }
 
-void place_row(const float* t, int count, const std::array<RayRamp, 3>& origin,
-               const std::array<RayRamp, 3>& direction, NodePlaces& places) {
+void place_row(const GeometryId* ids, const float* t, int count,
+               const std::array<RayRamp, 3>& origin, const std::array<RayRamp, 3>& direction,
+               NodePlaces& places) {
+    const auto background = hn::Set(kIds, kBackground);
     for (int first = 0; first < count; first += kStep) {
+        if (hn::AllTrue(kIds, hn::Eq(hn::LoadU(kIds, ids + first), background))) continue;
         const Number i = hn::Iota(kFloats, static_cast<float>(first));
         const Number dx = at(direction[0], i);
         const Number dy = at(direction[1], i);
@@ -252,8 +255,8 @@ void place_nodes(const RidgeGrid& grid, int row, const Viewpoint& viewpoint, Nod
         return std::array<RayRamp, 3>{{{first.x, step.x}, {first.y, step.y}, {first.z, step.z}}};
     };
     HWY_DYNAMIC_DISPATCH(place_row)
-    (grid.t.data() + grid.index(0, row), grid.width, ramps(viewpoint.origin),
-     ramps(viewpoint.direction), places);
+    (grid.id.data() + grid.index(0, row), grid.t.data() + grid.index(0, row), grid.width,
+     ramps(viewpoint.origin), ramps(viewpoint.direction), places);
 }
 
 void differentiate(const RidgeGrid& grid, std::size_t first, const MirroredPattern& pattern,

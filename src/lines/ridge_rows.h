@@ -19,7 +19,8 @@ inline constexpr std::size_t words_for(int nodes) {
     return static_cast<std::size_t>((nodes + kNodesInWord - 1) / kNodesInWord);
 }
 
-/// Where what the nodes of a row see lies, in the scene's frame. There is room for sixteen more.
+/// Where what the nodes of a row see lies, in the scene's frame; of no meaning on the background.
+/// There is room for sixteen more.
 struct NodePlaces {
     std::vector<float> x, y, z;
 };

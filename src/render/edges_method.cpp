@@ -172,7 +172,7 @@ FoundLines find_lines(const Edges& edges, WorkLoop& loop, RenderStats& stats) {
                         found.borders ? &*found.borders : nullptr};
     std::optional<RidgeSearch> ridges;
     if (edges.wants_ridges()) {
-        ridges.emplace(pipeline, edges.viewpoint, edges.q, edges.search_area());
+        ridges.emplace(pipeline, edges.viewpoint, edges.q, edges.search_area(), loop.threads());
         loop.expect(ridges->items());
     }
     std::vector<std::unique_ptr<LineFinder>> finders(pool);

@@ -11,8 +11,14 @@ namespace ink {
 
 namespace {
 
-/// Rows of cells that a thread searches at a time.
-constexpr int kBandRows = 16;
+/// Rows of cells that a thread searches at a time. Discs reach over a band's ends, so that few
+/// large ones are less work; threads share several each.
+int band_rows_of(int cells, int threads) {
+    constexpr int kLeast = 16;
+    constexpr int kMost = 128;
+    constexpr int kBandsOfThread = 4;
+    return std::clamp(cells / (kBandsOfThread * threads), kLeast, kMost);
+}
 
 int floor_of(int a, int b) { return a >= 0 ? a / b : -((b - 1 - a) / b); }
 int ceiling_of(int a, int b) { return -floor_of(-a, b); }
@@ -52,7 +58,7 @@ RidgeSettings ridge_settings(const Settings& settings) {
 }
 
 RidgeSearch::RidgeSearch(const Pipeline& pipeline, const Viewpoint& viewpoint, int per_pixel,
-                         const Tile& area)
+                         const Tile& area, int threads)
     : pipeline_(pipeline),
       viewpoint_(viewpoint),
       per_pixel_(per_pixel),
@@ -67,6 +73,7 @@ RidgeSearch::RidgeSearch(const Pipeline& pipeline, const Viewpoint& viewpoint, i
             {(static_cast<float>(x0_ * step_) + 0.5F) / static_cast<float>(per_pixel),
              (static_cast<float>(y0_ * step_) + 0.5F) / static_cast<float>(per_pixel)},
             static_cast<float>(step_) / static_cast<float>(per_pixel)),
+      band_rows_(band_rows_of(rows_of_cells(), threads)),
       kept_(nodes_of(area)) {
     cut_rim();
     const auto& objects = pipeline.scene.objects();
@@ -184,9 +191,10 @@ void RidgeSearch::put(std::size_t node, const HitPacket& hits, const NormalPacke
     grid_.t[node] = hits.t[lane];
 }
 
+int RidgeSearch::rows_of_cells() const { return std::max(0, grid_.height - 2 * apron_ - 1); }
+
 std::size_t RidgeSearch::bands() const {
-    const int cells = grid_.height - 2 * apron_ - 1;
-    return static_cast<std::size_t>(std::max(0, (cells + kBandRows - 1) / kBandRows));
+    return static_cast<std::size_t>((rows_of_cells() + band_rows_ - 1) / band_rows_);
 }
 
 void RidgeSearch::find(WorkLoop& loop, RenderStats& stats) {
@@ -215,8 +223,8 @@ void RidgeSearch::find(WorkLoop& loop, RenderStats& stats) {
         Worker& worker = worker_of(thread);
         const Timer timer(worker.stats.lines_ms);
         const Timer phase(worker.stats.ridges_ms);
-        const int first = apron_ + static_cast<int>(k) * kBandRows;
-        const int last = std::min(first + kBandRows, grid_.height - apron_ - 1);
+        const int first = apron_ + static_cast<int>(k) * band_rows_;
+        const int last = std::min(first + band_rows_, grid_.height - apron_ - 1);
         worker.field.find(first, last, found_[k]);
     });
     for (const auto& worker : workers) {

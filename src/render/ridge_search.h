@@ -36,8 +36,9 @@ struct LatticeView {
 class RidgeSearch {
   public:
     /// `per_pixel` lattice points along a pixel's side; `area` is what all tiles together cover.
+    /// What is found does not depend on the number of threads.
     RidgeSearch(const Pipeline& pipeline, const Viewpoint& viewpoint, int per_pixel,
-                const Tile& area);
+                const Tile& area, int threads);
 
     /// Threads may keep different tiles at the same time.
     void keep(const Tile& tile, const LatticeView& lattice);
@@ -64,6 +65,7 @@ class RidgeSearch {
     std::vector<RidgePiece> pieces_beside(const LineMask& others);
     Segment segment_of(const RidgePiece& piece) const;
     Nodes nodes_of(const Tile& pixels) const;
+    int rows_of_cells() const;
     std::size_t bands() const;
     void cut_rim();
     void amend(const Nodes& nodes, const LatticeView& lattice);
@@ -79,6 +81,7 @@ class RidgeSearch {
     int apron_;    ///< nodes
     int x0_, y0_;  ///< lattice point of node (0, 0), in steps
     RidgeGrid grid_;
+    int band_rows_;              ///< of cells that are searched at a time
     Nodes kept_;                 ///< by tiles
     std::vector<Nodes> strips_;  ///< the others
     std::vector<bool> balls_;    ///< objects without ridges: each ID is a ball
