@@ -191,19 +191,19 @@ void RidgeField::connect_rows(int j, std::vector<RidgePiece>& pieces) {
 }
 
 void RidgeField::connect_cell(int i, int j, std::uint32_t sides, std::vector<RidgePiece>& pieces) {
-    std::array<Crossing, 2> crossings;
-    std::size_t count = 0;
-    if ((sides & 1U) != 0) crossings.at(count++) = cross({upper_, i, j}, {upper_, i + 1, j});
-    if ((sides & 2U) != 0) crossings.at(count++) = cross({upper_, i, j}, {lower_, i, j + 1});
-    if ((sides & 4U) != 0)
-        crossings.at(count++) = cross({upper_, i + 1, j}, {lower_, i + 1, j + 1});
-    if ((sides & 8U) != 0)
-        crossings.at(count++) = cross({lower_, i, j + 1}, {lower_, i + 1, j + 1});
-    pieces.push_back({crossings[0].point,
-                      crossings[1].point,
-                      0.5F * (crossings[0].strength + crossings[1].strength),
-                      crossings[0].edge / 2,
-                      {crossings[0].edge, crossings[1].edge}});
+    const Crossing a = cross_side(i, j, std::countr_zero(sides));
+    const Crossing b = cross_side(i, j, std::bit_width(sides) - 1);
+    pieces.push_back(
+        {a.point, b.point, 0.5F * (a.strength + b.strength), a.edge / 2, {a.edge, b.edge}});
+}
+
+/// Sides of a cell: 0 above, 1 on the left, 2 on the right, 3 below.
+RidgeField::Crossing RidgeField::cross_side(int i, int j, int side) const {
+    const int left = i + (side == 2 ? 1 : 0);
+    const int right = i + (side == 1 ? 0 : 1);
+    const Row& from = side == 3 ? lower_ : upper_;
+    const Row& to = side == 0 ? upper_ : lower_;
+    return cross({from, left, j + (side == 3 ? 1 : 0)}, {to, right, j + (side == 0 ? 0 : 1)});
 }
 
 RidgeField::Crossing RidgeField::cross(const Node& a, const Node& b) const {

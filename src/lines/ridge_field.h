@@ -79,6 +79,7 @@ class RidgeField {
     void estimate_some(std::size_t first, std::uint32_t wanted, Row& row, std::size_t to);
     void connect_rows(int j, std::vector<RidgePiece>& pieces);
     Crossing cross(const Node& a, const Node& b) const;
+    Crossing cross_side(int i, int j, int side) const;
     void connect_cell(int i, int j, std::uint32_t sides, std::vector<RidgePiece>& pieces);
 
     const RidgeGrid& grid_;

@@ -1,6 +1,6 @@
 #include "lines/short_ridges.h"
 
-#include <array>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <numeric>
@@ -9,15 +9,16 @@ namespace ink {
 
 namespace {
 
-/// The last piece that named an edge, by the edge's column and direction: the two cells on either
-/// side of an edge follow each other among those of their column or row.
+/// The last piece that named an edge. Pieces come row by row, so that of the edges that are named
+/// between the cells on either side of one, none is farther from it than a row, in the order of
+/// their indices: entries may be shared by those that are farther.
 class EdgeTable {
   public:
-    explicit EdgeTable(int width) : width_(static_cast<std::size_t>(width)), last_(2 * width_) {}
+    explicit EdgeTable(int width) : last_(std::bit_ceil(2 * static_cast<std::size_t>(width) + 4)) {}
 
     /// The piece that named this edge before, or this one.
     std::uint32_t first(std::size_t edge, std::uint32_t piece) {
-        Entry& entry = last_[2 * (edge / 2 % width_) + edge % 2];
+        Entry& entry = last_[edge & (last_.size() - 1)];
         if (entry.edge != edge) entry = {edge, piece};
         return entry.piece;
     }
@@ -28,7 +29,6 @@ class EdgeTable {
         std::uint32_t piece = 0;
     };
 
-    std::size_t width_;
     std::vector<Entry> last_;
 };
 

@@ -332,6 +332,11 @@ const ColorPacket* LineFinder::pixel_block(int x, int y) {
     const int q = edges_.q;
     const int i0 = (x * q - grid_.x0) / kBlockSide;
     const int j0 = (y * q - grid_.y0) / kBlockSide;
+    const bool changes = smooths_ && smoothing_.changes(x, y);
+    if (q == 1 && !changes) {
+        const std::uint32_t k = block_index(i0, j0);
+        return k == kEmptyBlock || seen_[k] == 0 ? nullptr : &colors_[k];
+    }
     const ColorPacket& background = edges_.pipeline.shader.background();
     std::array<const ColorPacket*, kMostPointsInPixel> blocks;
     bool any = false;
@@ -343,10 +348,7 @@ const ColorPacket* LineFinder::pixel_block(int x, int y) {
             any |= k != kEmptyBlock && seen_[k] != 0;
         }
     }
-    const bool changes = smooths_ && smoothing_.changes(x, y);
     if (!any && !changes) return nullptr;
-    if (q == 1 && !changes) return blocks[0];
-
     ColorPacket& mean = mixed_.emplace_back(q == 1 ? *blocks[0] : mean_of_blocks(blocks, q));
     if (changes) smoothing_.apply(x, y, mean);
     return &mean;
