@@ -17,6 +17,8 @@
 #include "lines/bridges.h"
 #include "lines/fold_joints.h"
 #include "lines/line_gaps.h"
+#include "lines/point_map.h"
+#include "lines/segment_squares.h"
 #include "lines_world.h"
 
 namespace ink::test {
@@ -476,6 +478,52 @@ TEST(DoubledFold, StaysWhereALineOfAnotherKindGoesOnAsIt) {
     };
     EXPECT_GT(dropped(folds), 30U);
     EXPECT_EQ(dropped(folds + straight({60.5F, 21.5F}, {70.5F, 24.0F}, LineType::boundary)), 0U);
+}
+
+TEST(SegmentSquares, VisitJustTheSegmentsWhoseMiddlesAreNear) {
+    std::mt19937 random(7);
+    std::uniform_real_distribution<float> place(-40.0F, 300.0F);
+    std::uniform_real_distribution<float> step(-0.7F, 0.7F);
+    std::vector<Segment> segments(500);
+    for (Segment& segment : segments) {
+        segment.a = {place(random), place(random)};
+        segment.b = segment.a + Vec2f{step(random), step(random)};
+    }
+    const plane::SegmentSquares squares(segments);
+    for (const float reach : {1.5F, 20.0F, 70.0F}) {
+        const Vec2f p{place(random), place(random)};
+        std::set<std::uint32_t> visited;
+        squares.near(p, reach, [&](std::uint32_t k) { visited.insert(k); });
+        for (std::uint32_t k = 0; k < segments.size(); ++k) {
+            const Vec2f apart = (segments[k].a + segments[k].b) * 0.5F - p;
+            const bool near = std::abs(apart.x) <= reach && std::abs(apart.y) <= reach;
+            EXPECT_EQ(visited.contains(k), near) << k << " within " << reach;
+        }
+    }
+}
+
+TEST(PointMap, PassesOverNothingThatIsNearAndMostThatIsFar) {
+    std::mt19937 random(8);
+    std::uniform_real_distribution<float> place(-20.0F, 1000.0F);
+    std::vector<Vec2f> points(20);
+    for (Vec2f& point : points) point = {place(random), place(random)};
+    const plane::PointMap map(
+        points, [](Vec2f point) { return point; }, 3.0F);
+    int passed_over = 0;
+    for (int n = 0; n < 20000; ++n) {
+        const Vec2f p = n % 2 == 0 ? Vec2f{place(random), place(random)}
+                                   : points[static_cast<std::size_t>(n) % points.size()] +
+                                         Vec2f{place(random), place(random)} * 0.004F;
+        const bool near = std::ranges::any_of(points, [&](Vec2f point) {
+            return std::abs(point.x - p.x) <= 3.0F && std::abs(point.y - p.y) <= 3.0F;
+        });
+        EXPECT_TRUE(!near || map.may_have(p));
+        passed_over += map.may_have(p) ? 0 : 1;
+    }
+    EXPECT_GT(passed_over, 9000);
+    EXPECT_FALSE(plane::PointMap(
+                     std::vector<Vec2f>{}, [](Vec2f p) { return p; }, 3.0F)
+                     .may_have({0.0F, 0.0F}));
 }
 
 TEST(JointOfFolds, IsTheSameWhateverTheOrderOfTheSegments) {

@@ -60,6 +60,8 @@ class PacketStore {
     const PacketSides* sides() const { return sides_.data(); }
     /// Likewise what shading needs of them.
     void want_shades() { wants_shades_ = true; }
+    /// Neither is found any more.
+    void want_points_only() { wants_sides_ = wants_shades_ = false; }
     const PacketShades* shades() const { return shades_.data(); }
 
   private:

@@ -79,6 +79,7 @@ class ScreenTileTracer final : public TileTracer {
         }
     }
     void want_shades() override { store_.want_shades(); }
+    void want_points_only() override { store_.want_points_only(); }
     void see(std::size_t first, bool distances, std::span<HitPacket> hits,
              std::span<NormalPacket> normals) override {
         for (std::size_t k = 0; k < hits.size(); ++k) {

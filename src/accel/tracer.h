@@ -118,6 +118,8 @@ class TileTracer {
     /// normals to shade them by, interpolated where a mesh has normals at its corners. Only if the
     /// frame `shades_triangles`, and after `want_shades`.
     virtual void want_shades() {}
+    /// Takes both wishes back.
+    virtual void want_points_only() {}
     virtual void see(std::size_t /*first*/, bool /*distances*/, std::span<HitPacket> /*hits*/,
                      std::span<NormalPacket> /*normals*/) {}
 

@@ -12,19 +12,20 @@ namespace ink::plane {
 /// Ends of segments by their place, bit for bit.
 class EndTable {
   public:
-    /// For up to so many ends.
+    /// For up to so many ends, most of which meet another one.
     explicit EndTable(std::size_t most)
-        : slots_(std::bit_ceil(2 * most + 2)), mask_(slots_.size() - 1) {}
+        : slots_(std::bit_ceil(most + most / 4 + 2)), mask_(slots_.size() - 1) {}
 
     struct Meeting {
         std::uint32_t count = 0;
         std::array<std::uint32_t, 2> ends{};  ///< of the first two
     };
-    void add(Vec2f point, std::uint32_t end) {
+    const Meeting& add(Vec2f point, std::uint32_t end) {
         Slot& slot = slots_[find(point)];
         slot.point = point;
         if (slot.meeting.count < 2) slot.meeting.ends.at(slot.meeting.count) = end;
         ++slot.meeting.count;
+        return slot.meeting;
     }
     const Meeting& at(Vec2f point) const { return slots_[find(point)].meeting; }
 

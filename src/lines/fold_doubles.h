@@ -5,39 +5,37 @@
 #include <span>
 #include <vector>
 
+#include "lines/fold_graph.h"
 #include "lines/segment.h"
+#include "lines/segment_squares.h"
 
 namespace ink {
-
-/// The end of a self-occlusion: a segment, and which of its ends nothing goes on from.
-struct FoldTail {
-    std::uint32_t fold;
-    bool at_b;
-};
 
 /// Where two pieces of a self-occlusion run side by side, so that their strokes touch, one of them
 /// is enough.
 class FoldDoubles {
   public:
-    /// `folds`: the self-occlusions among `lines`. `pieces`: a line's number is that of the piece
-    /// it belongs to. `bridges` join pieces, each from one of its `owners` on.
-    FoldDoubles(std::span<const Segment> lines, std::span<const std::uint32_t> folds,
+    /// `squares`: those of `lines`. `pieces`: a line's number is that of the piece it belongs to.
+    /// `bridges` join pieces, each from one of its `owners` on.
+    FoldDoubles(std::span<const Segment> lines, const plane::SegmentSquares& squares,
                 std::span<const std::uint32_t> pieces, std::span<const Segment> bridges,
-                std::span<const std::uint32_t> owners);
+                std::span<const std::uint32_t> owners)
+        : lines_(lines), squares_(squares), pieces_(pieces), bridges_(bridges), owners_(owners) {}
 
     /// What comes after a segment, away from its end; beyond all lines if that is not one segment.
-    using NextFunction = std::function<FoldTail(FoldTail)>;
+    using NextFunction = std::function<FoldEnd(FoldEnd)>;
 
     /// Drops each tail as far back as it runs beside another piece, nearer than `reach` pixels.
     /// Adds to those that are `gone` already; ascending.
-    std::vector<std::size_t> drop(std::span<const FoldTail> tails, const NextFunction& next,
+    std::vector<std::size_t> drop(std::span<const FoldEnd> tails, const NextFunction& next,
                                   std::span<const std::size_t> gone, float reach) const;
 
   private:
     std::span<const Segment> lines_;
-    std::span<const std::uint32_t> folds_, pieces_;
-    std::vector<Segment> drawn_;          ///< the folds, then the bridges
-    std::vector<std::uint32_t> numbers_;  ///< of the fold, or that at which a bridge starts
+    const plane::SegmentSquares& squares_;
+    std::span<const std::uint32_t> pieces_;
+    std::span<const Segment> bridges_;
+    std::span<const std::uint32_t> owners_;
 };
 
 }  // namespace ink

@@ -10,6 +10,7 @@
 
 #include "lines/bridges.h"
 #include "lines/end_table.h"
+#include "lines/point_map.h"
 
 namespace ink {
 
@@ -19,6 +20,7 @@ using plane::dot;
 using plane::EndTable;
 using plane::length;
 using plane::nearest_on;
+using plane::PointMap;
 using plane::unit;
 
 constexpr std::uint32_t kNone = 0xFFFFFFFFU;
@@ -83,6 +85,9 @@ class JointEaser {
         Vec2f last() const { return points.back(); }
     };
 
+    static constexpr std::size_t kMostWalked = 256;  ///< segments
+    static constexpr float kHeld = 0.75F;            ///< by a line no farther away, cells
+
     Vec2f point(std::uint32_t end) const {
         return end % 2 == 0 ? lines_[end / 2].a : lines_[end / 2].b;
     }
@@ -103,8 +108,7 @@ class JointEaser {
         loose_.clear();
         for_each_end([&](std::uint32_t end) {
             if (table_.at(point(end)).count != 1) return;
-            const Walk back = walk(end, 3.0F * spacing_);
-            loose_.push_back({end, point(end), direction(back) * -1.0F});
+            loose_.push_back({end, point(end), direction(end, 3.0F * spacing_) * -1.0F});
         });
         std::ranges::sort(loose_, {}, [](const LooseEnd& e) {
             return std::tuple(e.point.y, e.point.x, e.way.y, e.way.x);
@@ -115,30 +119,23 @@ class JointEaser {
     /// Which loose ends end on a line.
     void find_held() {
         if (loose_.empty()) return;
-        const float near = 0.75F * spacing_;
-        // Most lines are in rows of pixels without a loose end.
-        const float reach = near + 2.0F * spacing_;  // of a segment from its end a
-        const float top = loose_.front().point.y - reach;
-        const auto row = [top](float y) { return static_cast<std::size_t>(y - top); };
-        std::vector<std::uint8_t> has_ends(row(loose_.back().point.y + reach) + 1);
-        for (const LooseEnd& loose : loose_) {
-            const std::size_t last = row(loose.point.y + reach);
-            for (std::size_t k = row(loose.point.y - reach); k <= last; ++k) has_ends[k] = 1;
-        }
+        const float reach = kHeld * spacing_ + 2.0F * spacing_;  // of a segment from its end a
+        const PointMap near(
+            loose_, [](const LooseEnd& loose) { return loose.point; }, reach);
         for (std::uint32_t k = 0; k < lines_.size(); ++k) {
-            const float y = lines_[k].a.y;
-            if (!(y >= top) || row(y) >= has_ends.size() || has_ends[row(y)] == 0) continue;
-            if (gone_[k] == 0) hold(k, y - reach, y + reach);
+            if (near.may_have(lines_[k].a) && gone_[k] == 0) hold(k, reach);
         }
     }
 
-    /// Those of some rows that a line holds.
-    void hold(std::uint32_t line, float from, float to) {
-        const float near = 0.75F * spacing_;
-        auto at = std::ranges::lower_bound(loose_, from, {},
+    /// Those that a line holds, not farther from its end a than `reach`.
+    void hold(std::uint32_t line, float reach) {
+        const Vec2f a = lines_[line].a;
+        const float most = kHeld * spacing_;
+        auto at = std::ranges::lower_bound(loose_, a.y - reach, {},
                                            [](const LooseEnd& loose) { return loose.point.y; });
-        for (; at != loose_.end() && at->point.y <= to; ++at) {
-            if (at->held || length(nearest_on(lines_[line], at->point) - at->point) > near) {
+        for (; at != loose_.end() && at->point.y <= a.y + reach; ++at) {
+            if (at->held || std::abs(at->point.x - a.x) > reach ||
+                length(nearest_on(lines_[line], at->point) - at->point) > most) {
                 continue;
             }
             const Walk own = walk(at->end, 3.0F * spacing_);
@@ -156,12 +153,11 @@ class JointEaser {
 
     /// Away from an end, along its segment and on, for `far` pixels or until the line ends.
     Walk walk(std::uint32_t end, float far) const {
-        constexpr std::size_t kMost = 256;
         Walk walk;
         walk.points.reserve(16);
         walk.ends.reserve(16);
         walk.points.push_back(point(end));
-        while (end != kNone && walk.length < far && walk.ends.size() < kMost) {
+        while (end != kNone && walk.length < far && walk.ends.size() < kMostWalked) {
             walk.ends.push_back(end);
             walk.points.push_back(point(end ^ 1U));
             walk.length += length(walk.points.back() - walk.points[walk.points.size() - 2]);
@@ -172,6 +168,19 @@ class JointEaser {
 
     /// In which a line goes that is walked along.
     static Vec2f direction(const Walk& walk) { return unit(walk.last() - walk.points.front()); }
+    /// In which a line goes that would be walked along.
+    Vec2f direction(std::uint32_t end, float far) const {
+        const Vec2f from = point(end);
+        Vec2f at = from;
+        float walked = 0.0F;
+        for (std::size_t n = 0; end != kNone && walked < far && n < kMostWalked; ++n) {
+            const Vec2f to = point(end ^ 1U);
+            walked += length(to - at);
+            at = to;
+            end = next_to(end ^ 1U);
+        }
+        return unit(at - from);
+    }
 
     /// Where one line was joined to another near its end, what is left of that end sticks out; so
     /// does the end of a line that turns back.
@@ -200,7 +209,7 @@ class JointEaser {
         std::size_t at = 0;
         for (std::size_t n = 1; n + 1 < hook.points.size(); ++n) {
             const Vec2f before = unit(hook.points[n] - hook.points[0]);
-            const float turn = dot(before, direction(walk(hook.ends[n], 1.5F * spacing_)));
+            const float turn = dot(before, direction(hook.ends[n], 1.5F * spacing_));
             if (turn >= sharpest) continue;
             sharpest = turn;
             at = n;
@@ -218,7 +227,7 @@ class JointEaser {
             if (other == kNone || other < end) return;
             if (std::max(end, other) / 2 < first_joining_) return;
             const float far = 1.5F * spacing_;
-            const float straight = -dot(direction(walk(end, far)), direction(walk(other, far)));
+            const float straight = -dot(direction(end, far), direction(other, far));
             if (straight < sharp) joints_.push_back({straight, end, other, 0.0F});
         });
     }
@@ -305,7 +314,7 @@ class JointEaser {
     /// Back towards where a walk began, as the line that goes on past its end points.
     Vec2f way_at_end_of(const Walk& walked) const {
         const std::uint32_t next = next_to(walked.ends.back() ^ 1U);
-        if (next != kNone) return direction(walk(next, 3.0F * spacing_)) * -1.0F;
+        if (next != kNone) return direction(next, 3.0F * spacing_) * -1.0F;
         return unit(walked.points[walked.points.size() / 2] - walked.last());
     }
 

@@ -28,23 +28,46 @@ float FoldProbe::facing(const Sample& sample) const {
     return -dot(sample.normal, viewpoint_.ray_direction(sample));
 }
 
-std::optional<Vec2f> FoldProbe::find_valley(Vec2f point, Vec2f way, GeometryId owner,
-                                            std::size_t worker) const {
-    const auto near = look_across(point, left_of(way) * (0.5F * spacing_), true, owner, worker);
-    if (!near) return {};
-    return look_across(*near, left_of(way) * (0.125F * spacing_), false, owner, worker);
+namespace {
+
+constexpr std::size_t kHalf = 3;
+constexpr std::size_t kAcross = 2 * kHalf + 1;
+
+/// Puts points beside one.
+void put_across(Vec2f point, Vec2f aside, std::span<Vec2f> points) {
+    for (std::size_t k = 0; k < kAcross; ++k) {
+        points[k] = point + aside * (static_cast<float>(k) - static_cast<float>(kHalf));
+    }
 }
 
-/// The lowest of the points beside one.
-std::optional<Vec2f> FoldProbe::look_across(Vec2f point, Vec2f aside, bool wide, GeometryId owner,
+}  // namespace
+
+/// First over a wide way across, then closely about the lowest point there. Mostly that is the
+/// middle one: what lies closely about it comes along in the same packet of rays.
+std::optional<Vec2f> FoldProbe::find_valley(Vec2f point, Vec2f way, GeometryId owner,
                                             std::size_t worker) const {
-    constexpr int kHalf = 3;
-    constexpr int kAcross = 2 * kHalf + 1;
-    std::array<Vec2f, kAcross> points;
-    for (int k = 0; k < kAcross; ++k) {
-        points[static_cast<std::size_t>(k)] = point + aside * static_cast<float>(k - kHalf);
+    std::array<Vec2f, 2 * kAcross> points;
+    const auto wide = std::span(points).first(kAcross);
+    const auto close = std::span(points).last(kAcross);
+    const Vec2f aside = left_of(way) * (0.125F * spacing_);
+    put_across(point, left_of(way) * (0.5F * spacing_), wide);
+    put_across(point, aside, close);
+    std::span<const Sample> samples = look(points, worker);
+    const auto near = lowest_of(samples.first(kAcross), true, owner);
+    if (!near) return {};
+    samples = samples.last(kAcross);
+    if (*near != kHalf) {
+        put_across(wide[*near], aside, close);
+        samples = look(close, worker);
     }
-    const std::span<const Sample> samples = look(points, worker);
+    const auto lowest = lowest_of(samples, false, owner);
+    if (!lowest) return {};
+    return close[*lowest];
+}
+
+/// Of samples side by side; nothing where a wide way across meets no valley.
+std::optional<std::size_t> FoldProbe::lowest_of(std::span<const Sample> samples, bool wide,
+                                                GeometryId owner) const {
     if (std::ranges::any_of(samples, [&](const Sample& s) { return s.id != owner; })) return {};
     std::array<float, kAcross> heights{};
     for (std::size_t k = 0; k < kAcross; ++k) heights[k] = facing(samples[k]);
@@ -57,7 +80,7 @@ std::optional<Vec2f> FoldProbe::look_across(Vec2f point, Vec2f aside, bool wide,
          heights[lowest] > settings_.most_facing)) {
         return {};
     }
-    return points[lowest];
+    return lowest;
 }
 
 bool FoldProbe::is_steep(std::span<const Vec2f> path, GeometryId owner, std::size_t worker) const {

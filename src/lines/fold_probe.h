@@ -46,8 +46,8 @@ class FoldProbe {
     };
 
     std::span<const Sample> look(std::span<const Vec2f> points, std::size_t worker) const;
-    std::optional<Vec2f> look_across(Vec2f point, Vec2f aside, bool wide, GeometryId owner,
-                                     std::size_t worker) const;
+    std::optional<std::size_t> lowest_of(std::span<const Sample> samples, bool wide,
+                                         GeometryId owner) const;
     void measure_depths(std::span<const std::uint32_t> folds, std::size_t worker,
                         std::span<float> depths) const;
     Vec2f middle_of(std::uint32_t fold) const { return (lines_[fold].a + lines_[fold].b) * 0.5F; }

@@ -5,13 +5,13 @@
 #include <cstdint>
 #include <iterator>
 #include <limits>
-#include <numeric>
 #include <optional>
 #include <tuple>
 #include <utility>
 
 #include "lines/bridges.h"
 #include "lines/fold_doubles.h"
+#include "lines/fold_graph.h"
 #include "lines/fold_probe.h"
 #include "lines/segment_squares.h"
 
@@ -48,17 +48,13 @@ class FoldMender {
           width_(width),
           loop_(loop),
           settings_(settings),
-          probe_(lines, viewpoint, spacing, workers, settings) {}
+          probe_(lines, viewpoint, spacing, workers, settings),
+          graph_(lines) {}
 
     FoldRepairs run() {
-        for (std::uint32_t k = 0; k < lines_.size(); ++k) {
-            if (lines_[k].type == LineType::self_occlusion) folds_.push_back(k);
-        }
-        if (folds_.empty()) return {};
-        squares_.emplace(lines_, 2.5F);
-        join();
-        pieces_ = parents_;
-        for (std::uint32_t k = 0; k < lines_.size(); ++k) pieces_[k] = root(k);
+        if (graph_.folds().empty()) return {};
+        squares_.emplace(lines_);
+        pieces_ = graph_.roots();
         find_loose_ends();
         follow_valleys();
         leap_gaps();
@@ -69,54 +65,14 @@ class FoldMender {
     }
 
   private:
-    using Key = std::tuple<float, float>;
-    struct Incidence {
-        Key key;
-        std::uint32_t segment;
-        bool at_b;
-        friend auto operator<=>(const Incidence&, const Incidence&) = default;
-    };
-
-    // Groups of segments that hang together: a forest over the indices of all lines.
-
-    std::uint32_t root(std::uint32_t k) const {
-        while (parents_[k] != k) k = parents_[k] = parents_[parents_[k]];
-        return k;
-    }
-    void unite(std::uint32_t a, std::uint32_t b) {
-        const std::uint32_t x = root(a);
-        const std::uint32_t y = root(b);
-        parents_[std::max(x, y)] = std::min(x, y);
-    }
-    bool is_fold(std::uint32_t k) const { return lines_[k].type == LineType::self_occlusion; }
-
-    void join() {
-        parents_.resize(lines_.size());
-        std::iota(parents_.begin(), parents_.end(), 0U);
-        incidences_.reserve(2 * folds_.size());
-        for (const std::uint32_t k : folds_) {
-            incidences_.push_back({{lines_[k].a.y, lines_[k].a.x}, k, false});
-            incidences_.push_back({{lines_[k].b.y, lines_[k].b.x}, k, true});
-        }
-        std::ranges::sort(incidences_);
-        for (std::size_t n = 1; n < incidences_.size(); ++n) {
-            if (incidences_[n].key == incidences_[n - 1].key) {
-                unite(incidences_[n].segment, incidences_[n - 1].segment);
-            }
-        }
-    }
-
-    std::span<const Incidence> meeting_at(Vec2f point) const {
-        const auto range =
-            std::ranges::equal_range(incidences_, Key{point.y, point.x}, {}, &Incidence::key);
-        return {range.begin(), range.end()};
-    }
+    std::uint32_t root(std::uint32_t k) const { return graph_.root(k); }
+    bool is_fold(std::uint32_t k) const { return graph_.is_fold(k); }
 
     /// The nearest line of another piece, no farther away than most of a lattice cell.
     std::uint32_t line_near(Vec2f point, std::uint32_t piece) const {
         float least = 0.75F * spacing_;
         std::uint32_t best = kNone;
-        squares_->near(point, [&](std::uint32_t k) {
+        squares_->near(point, 2.0F * least, [&](std::uint32_t k) {
             if (is_fold(k) && pieces_[k] == piece) return;
             const float distance = length(nearest_on(lines_[k], point) - point);
             // Two segments may share the nearest point.
@@ -137,13 +93,8 @@ class FoldMender {
 
     void find_loose_ends() {
         whole_.assign(lines_.size(), 0);
-        for (std::size_t n = 0; n < incidences_.size(); ++n) {
-            const bool goes_on =
-                (n > 0 && incidences_[n - 1].key == incidences_[n].key) ||
-                (n + 1 < incidences_.size() && incidences_[n + 1].key == incidences_[n].key);
-            if (goes_on) continue;
-            const auto [key, fold, at_b] = incidences_[n];
-            const Vec2f point{std::get<1>(key), std::get<0>(key)};
+        for (const auto [fold, at_b] : graph_.loose_ends()) {
+            const Vec2f point = graph_.point({fold, at_b});
             const std::uint32_t near = line_near(point, pieces_[fold]);
             if (near != kNone) {
                 hangs_.push_back({fold, near, at_b});
@@ -153,7 +104,8 @@ class FoldMender {
                 if (!shared && (!at_b || lines_[fold].spans_cell)) stubs_.push_back(fold);
                 continue;
             }
-            ends_.push_back({point, unit(point - back_from(fold, at_b)), fold, at_b});
+            ends_.push_back(
+                {point, unit(point - graph_.back_from({fold, at_b}, 3.0F * spacing_)), fold, at_b});
         }
         pass_on();
     }
@@ -161,7 +113,7 @@ class FoldMender {
     /// Whether just one line of another kind ends there, too: one line, whose type changes.
     bool goes_on_as_another(Vec2f point) const {
         int count = 0;
-        squares_->near(point, [&](std::uint32_t k) {
+        squares_->near(point, spacing_, [&](std::uint32_t k) {
             count += !is_fold(k) && (lines_[k].a == point || lines_[k].b == point) ? 1 : 0;
         });
         return count == 1;
@@ -177,8 +129,8 @@ class FoldMender {
         for (Hang& hang : hangs_) {
             if (!is_fold(hang.line)) continue;
             const Vec2f from = hang.at_b ? lines_[hang.fold].b : lines_[hang.fold].a;
-            NearEnd near = end_near(hang.line, false, from);
-            const NearEnd other = end_near(hang.line, true, from);
+            FoldGraph::NearEnd near = graph_.end_near({hang.line, false}, from);
+            const FoldGraph::NearEnd other = graph_.end_near({hang.line, true}, from);
             if (other.away < near.away) near = other;
             if (near.away > 2.0F * spacing_ || near.end / 2 == hang.fold) continue;
             const std::uint32_t line = lines_at[near.end];
@@ -188,48 +140,6 @@ class FoldMender {
             } else {
                 hang.line = line;
             }
-        }
-    }
-
-    /// An end of a piece, and how far it is away along the piece. End 2 k is a of fold k, 2 k + 1
-    /// is b.
-    struct NearEnd {
-        std::uint32_t end = kNone;
-        float away = std::numeric_limits<float>::infinity();
-    };
-
-    /// That which a fold comes to soon, from a point beside it on, towards one of its ends.
-    NearEnd end_near(std::uint32_t fold, bool at_b, Vec2f from) const {
-        constexpr int kMostSteps = 8;
-        Vec2f at = nearest_on(lines_[fold], from);
-        float away = 0.0F;
-        for (int step = 0; step < kMostSteps; ++step) {
-            const Vec2f to = at_b ? lines_[fold].b : lines_[fold].a;
-            away += length(to - at);
-            const auto meeting = meeting_at(to);
-            if (meeting.size() == 1) return {2 * fold + (at_b ? 1 : 0), away};
-            if (meeting.size() != 2) break;
-            const Incidence& next = meeting[meeting[0].segment == fold ? 1 : 0];
-            fold = next.segment;
-            at_b = !next.at_b;
-            at = to;
-        }
-        return {};
-    }
-
-    /// A point on the line some pixels before its end.
-    Vec2f back_from(std::uint32_t fold, bool at_b) const {
-        const float enough = 3.0F * spacing_;
-        float walked = 0.0F;
-        for (int step = 0;; ++step) {
-            const Vec2f from = at_b ? lines_[fold].b : lines_[fold].a;
-            const Vec2f to = at_b ? lines_[fold].a : lines_[fold].b;
-            walked += length(to - from);
-            const auto meeting = meeting_at(to);
-            if (walked >= enough || meeting.size() != 2 || step == 8) return to;
-            const Incidence& next = meeting[meeting[0].segment == fold ? 1 : 0];
-            fold = next.segment;
-            at_b = next.at_b;
         }
     }
 
@@ -331,7 +241,7 @@ class FoldMender {
             if (fold && root(end.reached) == root(end.fold)) continue;
             bridge(end);
             if (fold && meets_end(end)) {
-                unite(end.fold, end.reached);
+                graph_.unite(end.fold, end.reached);
             } else {
                 hangs_.push_back({end.fold, end.reached, end.at_b});
             }
@@ -360,7 +270,7 @@ class FoldMender {
     bool meets_end(const LooseEnd& end) const {
         const Segment& target = lines_[end.reached];
         return std::ranges::any_of(std::array{target.a, target.b}, [&](Vec2f tip) {
-            return length(tip - end.path.back()) < spacing_ && meeting_at(tip).size() == 1;
+            return length(tip - end.path.back()) < spacing_ && graph_.ends_at(tip);
         });
     }
 
@@ -396,7 +306,7 @@ class FoldMender {
 
     void find_crumbs() {
         std::vector<Group> groups(lines_.size());
-        for (const std::uint32_t k : folds_) {
+        for (const std::uint32_t k : graph_.folds()) {
             groups[root(k)].length += length(lines_[k].b - lines_[k].a);
         }
         for (std::size_t n = 0; n < owners_.size(); ++n) {
@@ -411,7 +321,7 @@ class FoldMender {
         unite_followers(groups);
         while (judge(groups)) {
         }
-        for (const std::uint32_t k : folds_) {
+        for (const std::uint32_t k : graph_.folds()) {
             if (groups[root(k)].crumb) repairs_.crumbs.push_back(k);
         }
         std::size_t kept = 0;
@@ -440,7 +350,7 @@ class FoldMender {
             const std::uint32_t a = root(fold);
             const std::uint32_t b = root(line);
             if (a == b) continue;
-            unite(a, b);
+            graph_.unite(a, b);
             groups[root(a)] = groups[a] + groups[b];
         }
     }
@@ -463,7 +373,7 @@ class FoldMender {
         };
         measure_depths(groups, [&](std::uint32_t group) { return is_short(groups[group]); });
         bool any = false;
-        for (const std::uint32_t k : folds_) {
+        for (const std::uint32_t k : graph_.folds()) {
             Group& group = groups[root(k)];
             if (group.crumb) continue;
             const float most = group.attached ? settings_.stub_area : settings_.crumb_area;
@@ -481,15 +391,11 @@ class FoldMender {
         for (const LooseEnd& end : ends_) {
             if (end.reached == kNone) tails_.push_back({end.fold, end.at_b});
         }
-        std::erase_if(tails_, [&](FoldTail tail) { return whole_[pieces_[tail.fold]] != 0; });
-        const auto next_of = [&](FoldTail tail) {
-            const Segment& segment = lines_[tail.fold];
-            const auto meeting = meeting_at(tail.at_b ? segment.a : segment.b);
-            if (meeting.size() != 2) return FoldTail{kNone, false};
-            const Incidence& next = meeting[meeting[0].segment == tail.fold ? 1 : 0];
-            return FoldTail{next.segment, next.at_b};
+        std::erase_if(tails_, [&](FoldEnd tail) { return whole_[pieces_[tail.fold]] != 0; });
+        const auto next_of = [&](FoldEnd tail) {
+            return graph_.next({tail.fold, !tail.at_b}).value_or(FoldEnd{kNone, false});
         };
-        repairs_.crumbs = FoldDoubles(lines_, folds_, pieces_, repairs_.bridges, owners_)
+        repairs_.crumbs = FoldDoubles(lines_, *squares_, pieces_, repairs_.bridges, owners_)
                               .drop(tails_, next_of, repairs_.crumbs, settings_.shadow * width_);
     }
 
@@ -497,7 +403,7 @@ class FoldMender {
     template <class Ask>
     void measure_depths(std::vector<Group>& groups, Ask asked) {
         std::vector<std::uint32_t> measured;
-        std::ranges::copy_if(folds_, std::back_inserter(measured), [&](std::uint32_t k) {
+        std::ranges::copy_if(graph_.folds(), std::back_inserter(measured), [&](std::uint32_t k) {
             return groups[root(k)].depth < 0.0F && asked(root(k));
         });
         if (measured.empty()) return;
@@ -518,10 +424,8 @@ class FoldMender {
     const FoldLoop& loop_;
     const FoldSettings& settings_;
     FoldProbe probe_;
-    std::vector<std::uint32_t> folds_;            ///< the self-occlusions among the lines
-    mutable std::vector<std::uint32_t> parents_;  ///< paths get shorter as they are walked
+    FoldGraph graph_;
     std::vector<std::uint32_t> pieces_;  ///< of each line: its group before any bridge was built
-    std::vector<Incidence> incidences_;  ///< of folds at their ends, by place
     struct Hang {
         std::uint32_t fold, line;
         bool at_b;
@@ -534,7 +438,7 @@ class FoldMender {
     std::vector<std::uint32_t> stubs_;
     std::vector<std::uint8_t> whole_;  ///< a piece: it goes on as a line of another kind
     /// Ends of folds, by their segments, that may double another one.
-    std::vector<FoldTail> tails_;
+    std::vector<FoldEnd> tails_;
     FoldRepairs repairs_;
     std::vector<std::uint32_t> owners_;  ///< a bridge: the fold at which it starts
 };

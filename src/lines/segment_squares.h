@@ -26,10 +26,8 @@ inline Vec2f nearest_on(const Segment& s, Vec2f p) {
 /// Segments by squares of the picture, to ask which are near a point.
 class SegmentSquares {
   public:
-    SegmentSquares(std::span<const Segment> segments, float reach)
-        : reach_(reach), side_(6.4F * reach) {
+    explicit SegmentSquares(std::span<const Segment> segments) {
         if (segments.empty()) return;
-        const auto middle = [](const Segment& s) { return (s.a + s.b) * 0.5F; };
         lower_ = middle(segments[0]);
         Vec2f upper = lower_;
         for (const Segment& segment : segments) {
@@ -43,44 +41,53 @@ class SegmentSquares {
         while ((size.x / side_ + 1.0F) * (size.y / side_ + 1.0F) > few) side_ *= 2.0F;
         across_ = column(upper) + 1;
         down_ = row(upper) + 1;
-        const auto square = [&](const Segment& segment) {
-            const Vec2f p = middle(segment);
+        const auto square = [&](Vec2f p) {
             return static_cast<std::size_t>(row(p) * across_ + column(p));
         };
         // Counted two places ahead: filling moves every start to its end, the next one's start.
         starts_.assign(static_cast<std::size_t>(across_ * down_) + 2, 0);
-        for (const Segment& segment : segments) ++starts_[square(segment) + 2];
+        for (const Segment& segment : segments) ++starts_[square(middle(segment)) + 2];
         std::partial_sum(starts_.begin(), starts_.end(), starts_.begin());
         entries_.resize(segments.size());
         for (std::uint32_t k = 0; k < segments.size(); ++k) {
-            entries_[starts_[square(segments[k]) + 1]++] = k;
+            const Vec2f p = middle(segments[k]);
+            entries_[starts_[square(p) + 1]++] = {p, k};
         }
     }
 
-    /// Calls `visit` for every segment that may come within the reach of `p`.
+    /// Calls `visit` for every segment whose middle is within `reach` of `p`, in x and in y.
     template <class Visit>
-    void near(Vec2f p, Visit visit) const {
-        const Vec2f low = p - Vec2f{reach_, reach_};
-        const Vec2f high = p + Vec2f{reach_, reach_};
+    void near(Vec2f p, float reach, Visit visit) const {
+        const Vec2f low = p - Vec2f{reach, reach};
+        const Vec2f high = p + Vec2f{reach, reach};
         for (int j = std::max(row(low), 0); j <= std::min(row(high), down_ - 1); ++j) {
             for (int i = std::max(column(low), 0); i <= std::min(column(high), across_ - 1); ++i) {
                 const auto square = static_cast<std::size_t>(j * across_ + i);
-                for (std::uint32_t k = starts_[square]; k < starts_[square + 1]; ++k) {
-                    visit(entries_[k]);
+                for (std::uint32_t n = starts_[square]; n < starts_[square + 1]; ++n) {
+                    const Entry& entry = entries_[n];
+                    if (std::abs(entry.middle.x - p.x) > reach) continue;
+                    if (std::abs(entry.middle.y - p.y) > reach) continue;
+                    visit(entry.segment);
                 }
             }
         }
     }
 
   private:
+    struct Entry {
+        Vec2f middle;
+        std::uint32_t segment;
+    };
+
+    static Vec2f middle(const Segment& s) { return (s.a + s.b) * 0.5F; }
     int column(Vec2f p) const { return static_cast<int>(std::floor((p.x - lower_.x) / side_)); }
     int row(Vec2f p) const { return static_cast<int>(std::floor((p.y - lower_.y) / side_)); }
 
-    float reach_, side_;  ///< a square is larger than the reach and a segment together
+    float side_ = 16.0F;  ///< pixels
     Vec2f lower_;
-    int across_ = 0, down_ = 0;           ///< squares
-    std::vector<std::uint32_t> starts_;   ///< of the squares, row by row, in the entries
-    std::vector<std::uint32_t> entries_;  ///< segments
+    int across_ = 0, down_ = 0;          ///< squares
+    std::vector<std::uint32_t> starts_;  ///< of the squares, row by row, in the entries
+    std::vector<Entry> entries_;         ///< square by square
 };
 
 }  // namespace ink::plane

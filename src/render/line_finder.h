@@ -51,6 +51,8 @@ class LineFinder {
     /// More samples, anywhere; faster in the part of the screen that was entered last.
     const SampleFunction& more_samples() const { return sample_; }
     void enter(const ScreenBox& area) { sampler_.enter(area); }
+    /// Says that no more tiles are searched: samples alone are wanted from now on.
+    void end_search() { sampler_.want_points_only(); }
 
     /// Whether any ray of the last tile's lattice hit anything.
     bool saw_anything() const { return saw_anything_; }

@@ -79,7 +79,7 @@ void mend(const Edges& edges, std::vector<std::unique_ptr<LineFinder>>& finders,
     std::vector<std::pair<std::uint32_t, std::uint32_t>> places;  // tile, and index within it
     std::size_t most = 0;
     for (const TileLines& tile : found) most += tile.segments.size();
-    lines.reserve(most);
+    lines.reserve(most + most / 4);  // and what joins them
     places.reserve(most);
     for (std::uint32_t tile = 0; tile < found.size(); ++tile) {
         for (std::uint32_t k = 0; k < found[tile].segments.size(); ++k) {
@@ -93,6 +93,7 @@ void mend(const Edges& edges, std::vector<std::unique_ptr<LineFinder>>& finders,
     std::vector<FoldWorker> workers;
     for (std::unique_ptr<LineFinder>& finder : finders) {
         if (!finder) finder = std::make_unique<LineFinder>(edges);
+        finder->end_search();
         workers.push_back({finder->more_samples(), [&](Vec2f low, Vec2f high) {
                                finder->enter({low.x, low.y, high.x, high.y});
                            }});

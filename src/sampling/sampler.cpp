@@ -155,6 +155,12 @@ bool Sampler::want_shades() {
     return wants_shades_;
 }
 
+void Sampler::want_points_only() {
+    wants_borders_ = false;
+    wants_shades_ = false;
+    tracer_->want_points_only();
+}
+
 void Sampler::take_shades(std::size_t first, bool distances, std::span<HitPacket> hits,
                           std::span<NormalPacket> normals) {
     tracer_->see(first, distances, hits, normals);

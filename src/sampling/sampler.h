@@ -62,6 +62,9 @@ class Sampler {
     void want_borders();
     void take_borders(std::size_t first, std::span<BorderPacket> borders);
 
+    /// Takes both wishes back: from now on, points alone are asked for.
+    void want_points_only();
+
     /// The ray stencils of a block's samples at the lattice points plus `offset`: one packet for
     /// each of the stencil's points. The pixels of a block share the point, which keeps the rays of
     /// a packet as coherent as those of the block itself.
