@@ -171,6 +171,26 @@ void ClusterBands::Cover::add(const Window& bounds) {
               });
 }
 
+std::uint64_t ClusterBands::Cover::met(const Window& first, float step, int count) const {
+    const int top = rows_.band(first.top);
+    const int bottom = rows_.band(first.bottom - kInside);
+    std::uint64_t found = 0;
+    for (int k = 0; k < count; ++k) {
+        const float moved = static_cast<float>(k) * step;
+        const int left = columns_.band(first.left + moved);
+        const int right = columns_.band(first.right + moved - kInside);
+        std::uint64_t met = 0;
+        for (int row = top; row <= bottom; ++row) {
+            const std::uint64_t* const cells = &cells_[static_cast<std::size_t>(row) * words_];
+            for (int column = left; column <= right; ++column) {
+                met |= cells[column / 64] >> column % 64;
+            }
+        }
+        found |= (met & 1U) << static_cast<unsigned>(k);
+    }
+    return found;
+}
+
 bool ClusterBands::Cover::any(int left, int right, int top, int bottom) const {
     bool found = false;
     for_words(left, right, [&](std::size_t word, std::uint64_t bits) {

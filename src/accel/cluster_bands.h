@@ -27,6 +27,10 @@ class ClusterBands {
     void find(const Window& window, std::vector<std::uint64_t>& places) const;
     /// False only if no cluster reaches into the window.
     bool reach(const Window& window) const { return cover_.meets(window); }
+    /// The same of windows side by side, see TileTracer::reached.
+    std::uint64_t reached(const Window& first, float step, int count) const {
+        return cover_.met(first, step, count);
+    }
 
     std::uint32_t cluster(std::size_t place) const { return order_[place]; }
     /// Sixteen places a packet.
@@ -52,9 +56,6 @@ class ClusterBands {
         explicit Cover(Vec2f centre);
         void add(const Window& bounds);
         bool meets(const Window& box) const {
-            // Bounds are wider than what they bound, so that what only touches a box from outside
-            // does not count.
-            constexpr float kInside = 1e-3F;
             const int left = columns_.band(box.left);
             const int right = columns_.band(box.right - kInside);
             const int top = rows_.band(box.top);
@@ -66,7 +67,13 @@ class ClusterBands {
             return (word >> column % 64 & 1U) != 0;
         }
 
+        std::uint64_t met(const Window& first, float step, int count) const;
+
       private:
+        /// Bounds are wider than what they bound, so that what only touches a box from outside
+        /// does not count.
+        static constexpr float kInside = 1e-3F;
+
         bool any(int left, int right, int top, int bottom) const;
 
         Axis columns_, rows_;

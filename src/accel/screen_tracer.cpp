@@ -94,6 +94,10 @@ class ScreenTileTracer final : public TileTracer {
     bool reaches(const ScreenBox& box) const override {
         return candidates_.reach(view_.window(box));
     }
+    std::uint64_t reached(const ScreenBox& first, float step, int count) const override {
+        if (!view_.bands) return TileTracer::reached(first, step, count);
+        return view_.bands->reached(view_.window(first), step, count);
+    }
     bool covers(std::uint32_t object, std::uint32_t primitive, const ScreenBox& box) override;
 
     /// Traces a square of the screen, unless that takes more than so many clusters.

@@ -136,6 +136,17 @@ class TileTracer {
 
     /// False only if no ray through a point of the box, which lies within the area, hits anything.
     virtual bool reaches(const ScreenBox& /*box*/) const { return true; }
+    /// The same of up to 64 boxes, the first one and others to its right, `step` pixels from each
+    /// to the next: a bit each, the lowest for the first.
+    virtual std::uint64_t reached(const ScreenBox& first, float step, int count) const {
+        std::uint64_t bits = 0;
+        for (int k = 0; k < count; ++k) {
+            const float right = static_cast<float>(k) * step;
+            const ScreenBox box{first.left + right, first.top, first.right + right, first.bottom};
+            bits |= std::uint64_t{reaches(box)} << static_cast<unsigned>(k);
+        }
+        return bits;
+    }
 
     /// True only if every ray through a point of the box, which lies within the area, hits that
     /// primitive first.

@@ -12,6 +12,7 @@ namespace {
 
 constexpr auto kFirstLimb = static_cast<std::int32_t>(Prediction::Kind::first_limb);
 constexpr auto kSecondLimb = static_cast<std::int32_t>(Prediction::Kind::second_limb);
+constexpr auto kSeam = static_cast<std::int32_t>(Prediction::Kind::seam);
 constexpr auto kGap = static_cast<std::int32_t>(Prediction::Kind::gap);
 
 Ball ball_of(const BallLanes& balls, int lane) {
@@ -51,6 +52,34 @@ void find_checks(float offset, float least_squared, const EdgeLanes& edges,
     }
 }
 
+/// What cross_as_predicted gives of sixteen edges, but for seams within one geometry.
+struct CrossingLanes {
+    Lanes<float> x, y;
+    Lanes<std::int32_t> type, first_in_front;
+    Lanes<GeometryId> nearer;
+};
+
+INKTRACE_MULTIVERSION
+void find_crossings(const EdgeLanes& edges, const PredictionLanes& predictions,
+                    const Lanes<GeometryId>& first, const Lanes<GeometryId>& second,
+                    CrossingLanes& crossings) {
+    constexpr auto kIntersection = static_cast<std::int32_t>(LineType::intersection);
+    constexpr auto kSelfOcclusion = static_cast<std::int32_t>(LineType::self_occlusion);
+    constexpr auto kSilhouette = static_cast<std::int32_t>(LineType::silhouette);
+    for (int i = 0; i < kLanes; ++i) {
+        const std::int32_t kind = predictions.kind[i];
+        const float at = predictions.at[i];
+        crossings.x[i] = edges.ax[i] + (edges.bx[i] - edges.ax[i]) * at;
+        crossings.y[i] = edges.ay[i] + (edges.by[i] - edges.ay[i]) * at;
+        const bool nearer = edges.first.t[i] <= edges.second.t[i];
+        const bool in_front = kind == kFirstLimb || (kind != kSecondLimb && nearer);
+        crossings.first_in_front[i] = in_front ? 1 : 0;
+        crossings.nearer[i] = in_front ? first[i] : second[i];
+        const std::int32_t limb = first[i] == second[i] ? kSelfOcclusion : kSilhouette;
+        crossings.type[i] = kind == kSeam ? kIntersection : limb;
+    }
+}
+
 }  // namespace
 
 void BallLocator::locate(const IdentifyFunction& identify, std::vector<Crossing>& crossings,
@@ -76,29 +105,47 @@ void BallLocator::locate(const IdentifyFunction& identify, std::vector<Crossing>
     confirm();
 
     crossings.reserve(crossings.size() + count_);
-    Crossing crossing;
     for (std::size_t number = 0; number < batches; ++number) {
-        const Batch& batch = batches_[number];
-        const EdgeLanes& lanes = batch.lanes;
-        const PredictionLanes& found = batch.predictions;
-        for (int lane = 0; lane < used_of(number); ++lane) {
-            crossing.edge = batch.edge[lane];
-            if (found.kind[lane] < 0) {
-                left.push_back(crossing.edge);
-                continue;
-            }
-            const Prediction prediction{static_cast<Prediction::Kind>(found.kind[lane]),
-                                        found.at[lane], found.t[lane], found.squared_radius[lane]};
-            const PredictedSide first{batch.first.id[lane], lanes.first.t[lane],
-                                      ball_of(lanes.first, lane)};
-            const PredictedSide second{batch.second.id[lane], lanes.second.t[lane],
-                                       ball_of(lanes.second, lane)};
-            if (cross_as_predicted(viewpoint_, settings_, prediction,
-                                   {lanes.ax[lane], lanes.ay[lane]},
-                                   {lanes.bx[lane], lanes.by[lane]}, first, second, crossing)) {
+        take_crossings(batches_[number], used_of(number), crossings, left);
+    }
+}
+
+void BallLocator::take_crossings(const Batch& batch, int used, std::vector<Crossing>& crossings,
+                                 std::vector<std::uint32_t>& left) const {
+    const EdgeLanes& lanes = batch.lanes;
+    const PredictionLanes& found = batch.predictions;
+    CrossingLanes all;
+    find_crossings(lanes, found, batch.first.id, batch.second.id, all);
+    Crossing crossing;
+    for (int lane = 0; lane < used; ++lane) {
+        crossing.edge = batch.edge[lane];
+        if (found.kind[lane] < 0) {
+            left.push_back(crossing.edge);
+            continue;
+        }
+        const GeometryId first = batch.first.id[lane];
+        const GeometryId second = batch.second.id[lane];
+        if (first == second && found.kind[lane] == kSeam) {
+            const Prediction prediction{Prediction::Kind::seam, found.at[lane], found.t[lane],
+                                        found.squared_radius[lane]};
+            if (cross_as_predicted(
+                    viewpoint_, settings_, prediction, {lanes.ax[lane], lanes.ay[lane]},
+                    {lanes.bx[lane], lanes.by[lane]},
+                    {first, lanes.first.t[lane], ball_of(lanes.first, lane)},
+                    {second, lanes.second.t[lane], ball_of(lanes.second, lane)}, crossing)) {
                 crossings.push_back(crossing);
             }
+            continue;
         }
+        crossing.point = {all.x[lane], all.y[lane]};
+        crossing.type = static_cast<LineType>(all.type[lane]);
+        crossing.strength = 1.0F;
+        crossing.t = found.t[lane];
+        crossing.first = first;
+        crossing.second = second;
+        crossing.nearer = all.nearer[lane];
+        crossing.first_in_front = all.first_in_front[lane] != 0;
+        crossings.push_back(crossing);
     }
 }
 
@@ -146,12 +193,15 @@ void BallLocator::confirm() {
         Batch& batch = batches_[checked_[n] / kLanes];
         const auto lane = static_cast<int>(checked_[n] % kLanes);
         std::int32_t& kind = batch.predictions.kind[lane];
-        const bool as_first = seen_[n] == batch.first.surface(lane);
-        const bool as_second = seen_[n] == batch.second.surface(lane);
-        const bool confirmed = kind == kFirstLimb    ? as_second
-                               : kind == kSecondLimb ? as_first
-                                                     : as_first || as_second;
-        if (!confirmed) kind = PredictionLanes::kNone;
+        const SurfaceKey seen = seen_[n];
+        // Of limbs only one surface will do. No branch: which one cannot be guessed.
+        const auto is = [&](const Ends& ends, std::int32_t unless) {
+            return (ends.object[lane] ^ seen.object) | (ends.primitive[lane] ^ seen.primitive) |
+                   static_cast<std::uint32_t>(kind == unless);
+        };
+        if (is(batch.first, kFirstLimb) != 0 && is(batch.second, kSecondLimb) != 0) {
+            kind = PredictionLanes::kNone;
+        }
     }
 }
 

@@ -53,8 +53,6 @@ class BallLocator {
     struct Ends {
         Lanes<GeometryId> id;
         Lanes<std::uint32_t> object, primitive;
-
-        SurfaceKey surface(int lane) const { return {object[lane], primitive[lane]}; }
     };
     struct Batch {
         EdgeLanes lanes;
@@ -76,6 +74,8 @@ class BallLocator {
     void search(Batch& batch, int lane) const;
     void list_checks(std::size_t number, int used);
     void confirm();
+    void take_crossings(const Batch& batch, int used, std::vector<Crossing>& crossings,
+                        std::vector<std::uint32_t>& left) const;
 
     Viewpoint viewpoint_;
     LocateSettings settings_;

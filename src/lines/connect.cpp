@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <cstring>
 #include <limits>
 
 #include "base/multiversion.h"
@@ -34,30 +33,27 @@ Vec2f nearest_within(Vec2f p, Vec2f a, Vec2f b) {
 
 }  // namespace
 
-/// Of a crossing on a side of cell (i, j): `corners` are the samples at the cell's corners,
-/// clockwise from its upper left one, which lies at `corner` on the screen.
-INKTRACE_INLINE Connector::Port Connector::make_port(const Corners& corners, Vec2f corner,
-                                                     float per_spacing, int side,
+/// The samples at a cell's corners, clockwise from its upper left one.
+INKTRACE_INLINE Connector::Corners Connector::corners_of(const SampleGrid& grid, int i, int j) {
+    const auto upper = static_cast<std::uint32_t>(grid.index(i, j));
+    const auto lower = static_cast<std::uint32_t>(grid.index(i, j + 1));
+    return {upper, upper + 1, lower + 1, lower};
+}
+
+/// Of a crossing on a side of a cell, but for its way.
+INKTRACE_INLINE Connector::Port Connector::make_port(const Corners& corners, int side,
                                                      const Crossing& crossing) {
-    Port port{0.0F,
-              &crossing,
-              crossing.first,
-              crossing.second,
-              corners[static_cast<std::size_t>(side)],
-              corners[static_cast<std::size_t>(side + 1) % 4],
-              crossing.first_in_front};
-    const Vec2f inside = (crossing.point - corner) * per_spacing;
-    switch (side) {
-        case kTop: port.way = inside.x; break;
-        case kRight: port.way = 1.0F + inside.y; break;
-        case kBottom: port.way = 3.0F - inside.x; break;
-        default: port.way = 4.0F - inside.y; break;
-    }
-    if (side == kBottom || side == kLeft) {  // walked from the edge's second end to its first
-        std::swap(port.before, port.after);
-        port.before_in_front = !port.before_in_front;
-    }
-    return port;
+    const std::uint32_t before = corners[static_cast<std::size_t>(side)];
+    const std::uint32_t after = corners[static_cast<std::size_t>(side + 1) % 4];
+    // Some sides are walked from the edge's second end to its first.
+    const bool back = side == kBottom || side == kLeft;
+    return {0.0F,
+            &crossing,
+            back ? crossing.second : crossing.first,
+            back ? crossing.first : crossing.second,
+            before,
+            after,
+            crossing.first_in_front != back};
 }
 
 /// Whether a line can run between two neighbouring ports without cutting another.
@@ -108,87 +104,131 @@ void Connector::connect(const SampleGrid& grid, std::span<const SuspectEdge> edg
                         std::span<const std::uint8_t> face_cells) {
     segments.clear();
     if (crossings.empty()) return;
-    count_members(grid, edges, crossings, face_cells);
+    place(grid, edges, crossings);
     segments.reserve(crossings.size());
-    // Most cells have none, or one, which there is nothing to join with: eight at a time.
-    constexpr std::uint64_t kTwoOrMore = 0x0202020202020202U;
+    // Most cells have no crossing, or one, which there is nothing to join with: 64 at a time.
     for (int j = 0; j < grid.height - 1; ++j) {
-        const std::uint8_t* const row = counts_.data() + static_cast<std::size_t>(j) * stride_;
-        for (std::size_t first = 0; first < stride_; first += 8) {
-            std::uint64_t eight = 0;
-            std::memcpy(&eight, row + first, 8);
-            for (eight &= kTwoOrMore; eight != 0; eight &= eight - 1) {
-                const std::size_t i = first + static_cast<std::size_t>(std::countr_zero(eight)) / 8;
-                connect_cell(grid, crossings, static_cast<int>(i), j, segments);
+        const EdgeBits* const row = edge_bits_.data() + static_cast<std::size_t>(j) * words_;
+        for (std::size_t word = 0; word < words_; ++word) {
+            const EdgeBits& here = row[word];
+            const EdgeBits& below = row[word + words_];
+            const EdgeBits& next = row[word + 1];  // its first point is the right end of the last
+            const std::uint64_t on_right = here.down >> 1U | next.down << 63U;
+            const std::uint64_t several = here.several_right | here.several_down |
+                                          below.several_right | here.several_down >> 1U |
+                                          next.several_down << 63U;
+            const std::uint64_t one_across = here.right ^ below.right;
+            const std::uint64_t two_across = here.right & below.right;
+            const std::uint64_t one_along = here.down ^ on_right;
+            const std::uint64_t two_along = here.down & on_right;
+            const std::uint64_t two =
+                (one_across & one_along) | ((two_across ^ two_along) & ~(one_across | one_along));
+            const int cells = grid.width - 1 - static_cast<int>(word * 64);
+            std::uint64_t rest = two | two_across | two_along | several;
+            if (cells < 64) rest &= (std::uint64_t{1} << static_cast<unsigned>(cells)) - 1;
+            for (; rest != 0; rest &= rest - 1) {
+                const int k = std::countr_zero(rest);
+                const auto side = [&](std::uint64_t bits, int number) {
+                    return static_cast<std::uint32_t>(bits >> k & 1U) << number;
+                };
+                const std::uint32_t sides = side(here.right, kTop) | side(on_right, kRight) |
+                                            side(below.right, kBottom) | side(here.down, kLeft);
+                const int i = static_cast<int>(word * 64) + k;
+                const bool plain = face_cells.empty() && ((two & ~several) >> k & 1U) != 0;
+                if (plain && connect_two(grid, crossings, i, j, sides, segments)) continue;
+                const bool with_faces = face_cells.empty() || face_cells[grid.index(i, j)] != 0;
+                connect_cell(grid, crossings, i, j, sides, with_faces, segments);
             }
         }
     }
 }
 
-void Connector::count_members(const SampleGrid& grid, std::span<const SuspectEdge> edges,
-                              std::span<const Crossing> crossings,
-                              std::span<const std::uint8_t> face_cells) {
-    const int across = grid.width - 1;
-    const int down = grid.height - 1;
-    stride_ = static_cast<std::size_t>(across + 7) / 8 * 8;
-    const std::size_t cells = stride_ * static_cast<std::size_t>(down);
-    counts_.assign(cells, 0);
-    members_.resize(cells);
+/// Finds out where crossings are.
+void Connector::place(const SampleGrid& grid, std::span<const SuspectEdge> edges,
+                      std::span<const Crossing> crossings) {
+    words_ = static_cast<std::size_t>(grid.width + 63) / 64;
+    // One more, as the right neighbour of the last.
+    edge_bits_.assign(words_ * static_cast<std::size_t>(grid.height) + 1, {});
+    const std::size_t points =
+        static_cast<std::size_t>(grid.width) * static_cast<std::size_t>(grid.height);
+    if (first_.size() < 2 * points) first_.resize(2 * points);
     more_.clear();
-    const auto add = [&](int i, int j, int side, std::size_t crossing) {
-        if (i < 0 || j < 0 || i >= across || j >= down) return;
-        if (!face_cells.empty() && crossings[crossing].type == LineType::mesh &&
-            face_cells[grid.index(i, j)] == 0) {
-            return;
-        }
-        const std::size_t cell =
-            static_cast<std::size_t>(j) * stride_ + static_cast<std::size_t>(i);
-        const Member member = static_cast<Member>(side) << 30U | static_cast<Member>(crossing);
-        if (counts_[cell] < 2) {
-            members_[cell][counts_[cell]++] = member;
-        } else {
-            counts_[cell] = 3;
-            more_.emplace_back(cell, member);
-        }
-    };
     for (std::size_t k = 0; k < crossings.size(); ++k) {
         const SuspectEdge& edge = edges[crossings[k].edge];
-        add(edge.i, edge.j, edge.down ? kLeft : kTop, k);
-        add(edge.down ? edge.i - 1 : edge.i, edge.down ? edge.j : edge.j - 1,
-            edge.down ? kRight : kBottom, k);
+        const std::size_t number = 2 * grid.index(edge.i, edge.j) + (edge.down ? 1 : 0);
+        const std::uint64_t bit = std::uint64_t{1} << edge.i % 64U;
+        EdgeBits& some = edge_bits_[edge.j * words_ + edge.i / 64U];
+        std::uint64_t& has_one = edge.down ? some.down : some.right;
+        if ((has_one & bit) == 0) {
+            has_one |= bit;
+            first_[number] = static_cast<std::uint32_t>(k);
+        } else {
+            (edge.down ? some.several_down : some.several_right) |= bit;
+            more_.emplace_back(number, static_cast<std::uint32_t>(k));
+        }
     }
     std::ranges::sort(more_);
 }
 
+namespace {
+
+/// Of the edge on a side of cell (i, j).
+INKTRACE_INLINE std::size_t edge_number(const SampleGrid& grid, int i, int j, int side) {
+    const std::array<std::size_t, 4> from_first{0, 3, 2 * static_cast<std::size_t>(grid.width), 1};
+    return 2 * grid.index(i, j) + from_first[static_cast<std::size_t>(side)];
+}
+
+}  // namespace
+
+/// The common case, of one crossing on each of two sides. False if they are not one line's.
+INKTRACE_INLINE bool Connector::connect_two(const SampleGrid& grid,
+                                            std::span<const Crossing> crossings, int i, int j,
+                                            std::uint32_t sides,
+                                            std::vector<Segment>& segments) const {
+    const Corners corners = corners_of(grid, i, j);
+    const auto port = [&](std::uint32_t bits) {
+        const int side = std::countr_zero(bits);
+        return make_port(corners, side, crossings[first_[edge_number(grid, i, j, side)]]);
+    };
+    const Port p = port(sides);
+    const Port q = port(sides & (sides - 1));
+    if (!one_line(p, q)) return false;
+    add_segment(p, q, segments);
+    return true;
+}
+
 void Connector::connect_cell(const SampleGrid& grid, std::span<const Crossing> crossings, int i,
-                             int j, std::vector<Segment>& segments) {
-    const std::size_t cell = static_cast<std::size_t>(j) * stride_ + static_cast<std::size_t>(i);
-    const auto upper = static_cast<std::uint32_t>(grid.index(i, j));
-    const auto lower = static_cast<std::uint32_t>(grid.index(i, j + 1));
-    const Corners corners{upper, upper + 1, lower + 1, lower};
+                             int j, std::uint32_t sides, bool with_faces,
+                             std::vector<Segment>& segments) {
+    // In an order that does not depend on that of the crossings.
+    cell_members_.clear();
+    for (; sides != 0; sides &= sides - 1) {
+        const int side = std::countr_zero(sides);
+        const auto add = [&](std::uint32_t crossing) {
+            if (!with_faces && crossings[crossing].type == LineType::mesh) return;
+            cell_members_.push_back(static_cast<Member>(side) << 30U | crossing);
+        };
+        const std::size_t edge = edge_number(grid, i, j, side);
+        add(first_[edge]);
+        auto more = std::ranges::lower_bound(more_, edge, {}, &decltype(more_)::value_type::first);
+        for (; more != more_.end() && more->first == edge; ++more) add(more->second);
+    }
+    const Corners corners = corners_of(grid, i, j);
     const Vec2f corner = grid.point(i, j);
     const float per_spacing = 1.0F / grid.spacing;
-    const auto port = [&](Member member) {
-        return make_port(corners, corner, per_spacing, static_cast<int>(member >> 30U),
-                         crossings[member & 0x3FFFFFFFU]);
-    };
-    Port p = port(members_[cell][0]);
-    Port q = port(members_[cell][1]);
-    if (counts_[cell] == 2) {
-        if (q.way < p.way) std::swap(p, q);
-        if (one_line(p, q)) {
-            add_segment(p, q, segments);
-            return;
+    ports_.clear();
+    for (const Member member : cell_members_) {
+        const auto side = static_cast<int>(member >> 30U);
+        const Crossing& crossing = crossings[member & 0x3FFFFFFFU];
+        Port& port = ports_.emplace_back(make_port(corners, side, crossing));
+        const Vec2f inside = (crossing.point - corner) * per_spacing;
+        switch (side) {
+            case kTop: port.way = inside.x; break;
+            case kRight: port.way = 1.0F + inside.y; break;
+            case kBottom: port.way = 3.0F - inside.x; break;
+            default: port.way = 4.0F - inside.y; break;
         }
     }
-    // In an order that does not depend on that of the crossings.
-    cell_members_.assign(members_[cell].begin(), members_[cell].end());
-    auto more = std::ranges::lower_bound(more_, cell, {}, &std::pair<std::size_t, Member>::first);
-    for (; more != more_.end() && more->first == cell; ++more)
-        cell_members_.push_back(more->second);
-    std::ranges::sort(cell_members_);
-    ports_.clear();
-    for (const Member member : cell_members_) ports_.push_back(port(member));
     first_segment_ = segments.size();
     join_ports(segments);
 }

@@ -39,14 +39,22 @@ class Connector {
         bool before_in_front;  ///< of the two sides
     };
 
-    void count_members(const SampleGrid& grid, std::span<const SuspectEdge> edges,
-                       std::span<const Crossing> crossings,
-                       std::span<const std::uint8_t> face_cells);
+    /// A crossing on a side of a cell: side << 30 | crossing.
+    using Member = std::uint32_t;
+    /// Which edges of 64 points in a row have a crossing, and which have several.
+    struct EdgeBits {
+        std::uint64_t right, down, several_right, several_down;
+    };
+
+    void place(const SampleGrid& grid, std::span<const SuspectEdge> edges,
+               std::span<const Crossing> crossings);
+    bool connect_two(const SampleGrid& grid, std::span<const Crossing> crossings, int i, int j,
+                     std::uint32_t sides, std::vector<Segment>& segments) const;
     void connect_cell(const SampleGrid& grid, std::span<const Crossing> crossings, int i, int j,
-                      std::vector<Segment>& segments);
+                      std::uint32_t sides, bool with_faces, std::vector<Segment>& segments);
     using Corners = std::array<std::uint32_t, 4>;
-    static Port make_port(const Corners& corners, Vec2f corner, float per_spacing, int side,
-                          const Crossing& crossing);
+    static Corners corners_of(const SampleGrid& grid, int i, int j);
+    static Port make_port(const Corners& corners, int side, const Crossing& crossing);
     static bool one_line(const Port& p, const Port& q);
     void join_ports(std::vector<Segment>& segments);
     bool join_best_pair(std::vector<Segment>& segments);
@@ -55,12 +63,10 @@ class Connector {
     static void add_segment(const Port& from, const Port& to, std::vector<Segment>& segments);
     static Segment& add_segment(const Port& from, Vec2f to, std::vector<Segment>& segments);
 
-    /// A crossing on a side of a cell: side << 30 | crossing.
-    using Member = std::uint32_t;
-    std::size_t stride_ = 0;            ///< cells of a row, and some more to make whole eights
-    std::vector<std::uint8_t> counts_;  ///< of a cell's members: up to 2, or 3 for more
-    std::vector<std::array<Member, 2>> members_;        ///< a cell's first two
-    std::vector<std::pair<std::size_t, Member>> more_;  ///< the others, by cell
+    std::size_t words_ = 0;             ///< a row of points
+    std::vector<EdgeBits> edge_bits_;   ///< row by row
+    std::vector<std::uint32_t> first_;  ///< crossing of an edge, by 2 * point + (1 if down)
+    std::vector<std::pair<std::size_t, std::uint32_t>> more_;  ///< the others, by edge
     std::vector<Member> cell_members_;
     std::vector<Port> ports_;
     std::size_t first_segment_ = 0;  ///< of the cell at hand

@@ -134,11 +134,13 @@ Edges::Edges(const Pipeline& shared)
     const Size size = shared.settings.size;
     no_lines =
         LineDensity(-margin, -margin, size.width + margin, size.height + margin, ink.widest());
-    draw_tiles = cut_into_tiles(size, shared.settings.tile);
     search_tiles =
         cut_into_tiles({size.width + 2 * margin, size.height + 2 * margin}, shared.settings.tile);
     for (Tile& tile : search_tiles) {
         tile = {tile.x0 - margin, tile.y0 - margin, tile.x1 - margin, tile.y1 - margin};
+        const Tile seen{std::max(tile.x0, 0), std::max(tile.y0, 0), std::min(tile.x1, size.width),
+                        std::min(tile.y1, size.height)};
+        if (seen.x0 < seen.x1 && seen.y0 < seen.y1) draw_tiles.push_back(seen);
     }
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <memory>
 #include <vector>
 
@@ -21,6 +22,7 @@ namespace ink {
 /// The lines of one tile on their way from the pass that finds them to the pass that draws.
 struct TileLines {
     std::vector<InkStroke> strokes;  ///< to be inked
+    std::size_t inner = 0;           ///< of them, the first so many ink no pixel of another tile
     std::vector<Segment> segments;   ///< all, in full, where anything asks for more than ink
     Fringe fringe;
 };
@@ -55,6 +57,8 @@ struct Edges {
     }
     /// Whether tiles keep whole lines until all are found.
     bool keeps_segments() const { return mends_lines() || wants_segments(); }
+    /// How far from a stroke's ends a tile may lie that it still inks pixels of.
+    float stroke_reach() const { return std::ceil(ink.reach()) + 1.0F; }
     bool wants_faces() const { return find_lines && has_meshes && wanted.has(LineType::mesh); }
     /// Whether the line where a face goes out of sight covers all that its edges behind it could
     /// ink, so that lines between faces need not end there.

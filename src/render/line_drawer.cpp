@@ -168,7 +168,7 @@ void LineDrawer::ink_borders(const Tile& tile) {
 void LineDrawer::write_planes(const Tile& tile, const std::vector<TileLines>& found) {
     planes_.begin(tile.x0, tile.y0, tile.x1 - tile.x0, tile.y1 - tile.y0);
     if (edges_.draw_lines) {
-        for_each_near_tile(tile, found, [&](const TileLines& lines) {
+        for_each_near_tile(tile, found, [&](const TileLines& lines, bool) {
             for (const Segment& segment : lines.segments) {
                 if (!edges_.wanted.has(segment.type) || segment.for_data) continue;
                 const InkStroke stroke = make_ink_stroke(segment, edges_.style_of(segment));
@@ -199,22 +199,25 @@ void LineDrawer::add_face_planes(const Tile& tile) {
     });
 }
 
-/// Tiles whose lines may reach a tile. They were searched on the same raster, moved by the margin;
-/// a segment leaves its tile by less than a pixel.
+/// Tiles whose lines may reach a tile, which is one of them as far as it lies on the film. A
+/// segment leaves its tile by less than a pixel. `visit(lines, own)` tells whether it is the tile
+/// itself.
 template <class Visit>
 void LineDrawer::for_each_near_tile(const Tile& tile, const std::vector<TileLines>& found,
                                     Visit visit) {
     const int side = edges_.pipeline.settings.tile;
-    const int reach = static_cast<int>(std::ceil(edges_.ink.reach())) + 1;
+    const auto reach = static_cast<int>(edges_.stroke_reach());
     const auto across = static_cast<int>(edges_.search_tiles_across());
     const int down = static_cast<int>(found.size()) / across;
     const auto column = [&](int x) {
         return std::clamp((x + edges_.margin) / side, 0, across - 1);
     };
     const auto row = [&](int y) { return std::clamp((y + edges_.margin) / side, 0, down - 1); };
+    const auto own = static_cast<std::size_t>(row(tile.y0) * across + column(tile.x0));
     for (int j = row(tile.y0 - reach); j <= row(tile.y1 + reach); ++j) {
         for (int i = column(tile.x0 - reach); i <= column(tile.x1 + reach); ++i) {
-            visit(found[static_cast<std::size_t>(j * across + i)]);
+            const auto index = static_cast<std::size_t>(j * across + i);
+            visit(found[index], index == own);
         }
     }
 }
@@ -224,7 +227,7 @@ void LineDrawer::gather(const Tile& tile, const std::vector<TileLines>& found) {
     namespace hn = hwy::HWY_NAMESPACE;
     // Four lanes are what every processor has.
     constexpr hn::FixedTag<float, 4> kEnds;
-    const float reach = std::ceil(edges_.ink.reach()) + 1.0F;
+    const float reach = edges_.stroke_reach();
     const float left = static_cast<float>(tile.x0) - reach;
     const float right = static_cast<float>(tile.x1) + reach;
     const float top = static_cast<float>(tile.y0) - reach;
@@ -234,12 +237,15 @@ void LineDrawer::gather(const Tile& tile, const std::vector<TileLines>& found) {
     const auto lower = hn::LoadU(kEnds, first.data());
     const auto upper = hn::LoadU(kEnds, last.data());
     std::size_t most = 0;
-    for_each_near_tile(tile, found, [&](const TileLines& lines) { most += lines.strokes.size(); });
+    for_each_near_tile(tile, found, [&](const TileLines& lines, bool own) {
+        most += lines.strokes.size() - (own ? 0 : lines.inner);
+    });
     near_.resize(most);
     middles_.resize(most + 1);  // each is written with what the next will overwrite
     std::size_t count = 0;
-    for_each_near_tile(tile, found, [&](const TileLines& lines) {
-        for (const InkStroke& s : lines.strokes) {
+    for_each_near_tile(tile, found, [&](const TileLines& lines, bool own) {
+        const std::span<const InkStroke> all = lines.strokes;
+        for (const InkStroke& s : own ? all : all.subspan(lines.inner)) {
             std::array<float, 4> ends;
             static_assert(offsetof(InkStroke, b) == sizeof(Vec2f));
             std::memcpy(ends.data(), &s, sizeof(ends));

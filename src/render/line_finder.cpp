@@ -46,7 +46,12 @@ INKTRACE_INLINE void LineFinder::keep_stroke(const Segment& segment) {
     const InkStroke stroke = make_ink_stroke(segment, edges_.style_of(segment));
     // Those between faces are counted by add_face_density.
     if (segment.type != LineType::mesh) count(stroke);
-    if (edges_.draw_lines) strokes_.push_back(stroke);
+    if (!edges_.draw_lines) return;
+    const bool inner = std::min(stroke.a.x, stroke.b.x) >= inner_.left &&
+                       std::max(stroke.a.x, stroke.b.x) <= inner_.right &&
+                       std::min(stroke.a.y, stroke.b.y) >= inner_.top &&
+                       std::max(stroke.a.y, stroke.b.y) <= inner_.bottom;
+    (inner ? strokes_ : outer_strokes_).push_back(stroke);
 }
 
 /// Whether a point of the grid saw a ball or the background, and which.
@@ -66,6 +71,10 @@ INKTRACE_INLINE bool LineFinder::see_ball(int i, int j, BallHit& hit) const {
 TileLines LineFinder::search(const Tile& tile) {
     found_ = {};
     strokes_.clear();
+    outer_strokes_.clear();
+    const float reach = edges_.stroke_reach();
+    inner_ = {static_cast<float>(tile.x0) + reach, static_cast<float>(tile.y0) + reach,
+              static_cast<float>(tile.x1) - reach, static_cast<float>(tile.y1) - reach};
     smoothing_.begin(tile);
     trace_lattice(tile);
     if (faces_ != nullptr) map_faces(tile);
@@ -76,7 +85,10 @@ TileLines LineFinder::search(const Tile& tile) {
     // that tile alone may know.
     if (front_ && (edges_.find_lines || edges_.smooth_shading)) close_slits();
     if (front_) put_pixels(tile);
-    found_.strokes = strokes_;  // no larger than they are
+    found_.inner = strokes_.size();
+    found_.strokes.reserve(strokes_.size() + outer_strokes_.size());  // no more than they are
+    found_.strokes.insert(found_.strokes.end(), strokes_.begin(), strokes_.end());
+    found_.strokes.insert(found_.strokes.end(), outer_strokes_.begin(), outer_strokes_.end());
     return std::move(found_);
 }
 
@@ -150,10 +162,22 @@ void LineFinder::lay_blocks() {
                              kEmptyBlock);
             continue;
         }
-        for (int i = 0; i < columns_in_blocks_; i += kBlockSide) {
-            block_at_.push_back(
-                lay_block({grid_.x0 + i, grid_.y0 + j, std::min(kBlockSide, columns_in_blocks_ - i),
-                           std::min(kBlockSide, rows_in_blocks_ - j), kBlockSide, whole}));
+        const float side = kBlockSide * grid_.spacing;
+        std::uint64_t reached = 0;
+        for (int k = 0; k < blocks_across_; ++k, reached >>= 1U) {
+            const Block block{grid_.x0 + k * kBlockSide,
+                              grid_.y0 + j,
+                              std::min(kBlockSide, columns_in_blocks_ - k * kBlockSide),
+                              std::min(kBlockSide, rows_in_blocks_ - j),
+                              kBlockSide,
+                              whole};
+            if (k % 64 == 0) {
+                reached = sampler_.reached(screen_box(block, grid_.spacing), side,
+                                           std::min(blocks_across_ - k, 64));
+            }
+            block_at_.push_back((reached & 1U) != 0 ? static_cast<std::uint32_t>(blocks_.size())
+                                                    : kEmptyBlock);
+            if ((reached & 1U) != 0) blocks_.push_back(block);
         }
     }
     strips_down_.clear();

@@ -263,7 +263,9 @@ class LineFinder {
     std::vector<float> brightness_;  ///< of the grid's points, if tones are told apart
     std::vector<Segment> toned_;
     TileLines found_;
-    std::vector<InkStroke> strokes_;
+    ScreenBox inner_{};               ///< what lies within it inks no pixel of another tile
+    std::vector<InkStroke> strokes_;  ///< within it
+    std::vector<InkStroke> outer_strokes_;
     EdgeSmoothing smoothing_;
     bool smooths_;         ///< the shading along lines
     bool keeps_segments_;  ///< and not only their strokes

@@ -58,6 +58,7 @@ void join(std::vector<Segment>& lines, float spacing, float width, FoldRepairs& 
 /// Makes a tile's strokes anew from its segments.
 void make_strokes(const Edges& edges, TileLines& tile) {
     tile.strokes.clear();
+    tile.inner = 0;
     for (const Segment& segment : tile.segments) {
         if (!edges.draw_lines || !edges.wanted.has(segment.type) || segment.for_data) continue;
         tile.strokes.push_back(make_ink_stroke(segment, edges.style_of(segment)));

@@ -40,6 +40,10 @@ class Sampler {
     void enter(const ScreenBox& area);
     /// Within that part: false only if no ray through a point of the box hits anything.
     bool reaches(const ScreenBox& box) const;
+    /// The same of a row of boxes, see TileTracer::reached.
+    std::uint64_t reached(const ScreenBox& first, float step, int count) const {
+        return tracer_->reached(first, step, count);
+    }
     /// Whether hits do not depend on which rays travel together.
     bool rays_travel_alone() const { return tracer_->rays_travel_alone(); }
 
