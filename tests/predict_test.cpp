@@ -5,10 +5,13 @@
 #include <cmath>
 #include <optional>
 #include <random>
+#include <span>
 #include <vector>
 
+#include "lines/edge_balls.h"
 #include "lines/predict_lanes.h"
 #include "lines_world.h"
+#include "sampling/surface_key.h"
 
 namespace ink::test {
 namespace {
@@ -186,6 +189,63 @@ TEST(PredictedSeam, WithinOneGeometryIsACrease) {
     const Found found = search(world, 1);
     EXPECT_GT(count(found, LineType::crease), 15U);
     EXPECT_EQ(count(found, LineType::intersection), 0U);
+}
+
+TEST(BallTable, TellsOfEdgesWhatTheirEndsSaw) {
+    std::mt19937 random(5);
+    const std::vector<float> balls = [&] {
+        std::vector<float> numbers(4 * 50);
+        for (float& number : numbers) number = static_cast<float>(random() % 1000) / 7.0F;
+        return numbers;
+    }();
+    const BallTable table{3, 11, balls.data()};
+    SampleGrid grid;
+    grid.x0 = -4;
+    grid.y0 = 60;
+    grid.spacing = 0.5F;
+    grid.resize(33, 9);
+    for (std::size_t k = 0; k < grid.id.size(); ++k) {
+        const auto ball = static_cast<GeometryId>(random() % 50);
+        grid.id[k] = random() % 4 == 0 ? kBackground : table.first + ball;
+        grid.t[k] = static_cast<float>(k);
+    }
+    std::vector<SuspectEdge> edges;
+    for (std::uint16_t j = 0; j < 8; ++j) {
+        for (std::uint16_t i = 0; i < 32; ++i) {
+            edges.push_back({i, j, random() % 2 == 0, Suspicion::id});
+        }
+    }
+    for (const std::size_t count : {1U, 5U, 16U}) {
+        for (std::size_t first = 0; first + count <= edges.size(); first += count) {
+            EdgeLanes lanes;
+            EdgeEnds from;
+            EdgeEnds to;
+            find_edge_balls(grid, std::span(edges).subspan(first, count), table, lanes, from, to);
+            for (std::size_t n = 0; n < count; ++n) {
+                const SuspectEdge& edge = edges[first + n];
+                const auto lane = static_cast<int>(n);
+                const auto expect = [&](int i, int j, float x, float y, const BallLanes& seen,
+                                        const EdgeEnds& ends) {
+                    const std::size_t k = grid.index(i, j);
+                    const bool hit = grid.id[k] != kBackground;
+                    const std::size_t ball = hit ? grid.id[k] - 11 : 0;
+                    EXPECT_EQ(x, grid.point(i, j).x);
+                    EXPECT_EQ(y, grid.point(i, j).y);
+                    EXPECT_EQ(ends.id[lane], grid.id[k]);
+                    EXPECT_EQ(ends.object[lane], hit ? 3U : SurfaceKey{}.object);
+                    EXPECT_EQ(ends.primitive[lane], ball);
+                    EXPECT_EQ(seen.x[lane], hit ? balls[4 * ball] : 0.0F);
+                    EXPECT_EQ(seen.y[lane], hit ? balls[4 * ball + 1] : 0.0F);
+                    EXPECT_EQ(seen.z[lane], hit ? balls[4 * ball + 2] : 0.0F);
+                    EXPECT_EQ(seen.radius[lane], hit ? balls[4 * ball + 3] : 0.0F);
+                    EXPECT_EQ(seen.t[lane], hit ? grid.t[k] : 0.0F);
+                };
+                expect(edge.i, edge.j, lanes.ax[lane], lanes.ay[lane], lanes.first, from);
+                expect(edge.i + (edge.down ? 0 : 1), edge.j + (edge.down ? 1 : 0), lanes.bx[lane],
+                       lanes.by[lane], lanes.second, to);
+            }
+        }
+    }
 }
 
 }  // namespace

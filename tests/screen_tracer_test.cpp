@@ -811,6 +811,42 @@ TEST(Candidates, ReachNoBoxBetweenTwoObjects) {
     EXPECT_FALSE(candidates.reach({-8, 8, -8, 8, kInfinity}));
 }
 
+TEST(ClusterBands, SayOfARowOfBoxesWhatTheySayOfEach) {
+    std::mt19937 random(21);
+    std::vector<Sphere> spheres;
+    for (int k = 0; k < 60; ++k) {
+        spheres.push_back({{uniform(random), uniform(random), uniform(random)}, 0.01F});
+    }
+    const Scene scene({sphere_object(spheres)});
+    const Clusters clusters(scene);
+    const Camera camera(scene, {}, {512, 384});
+    const Projection& projection = camera.projection();
+    const BoundsPyramid pyramid(clusters, Basis(projection));
+    const ClusterBands bands(pyramid, clusters.clusters.size(), projection.centre);
+    int reached = 0;
+    for (const float step : {4.0F, 2.0F, 1.0F}) {
+        for (const float wider : {0.0F, 0.5F, 6.0F}) {
+            for (int count = 1; count <= 64; count += 7) {
+                for (float top = -200.0F; top < 200.0F; top += 12.0F) {
+                    const Window first{-264.0F + 8.0F * static_cast<float>(count) - wider,
+                                       -264.0F + 8.0F * static_cast<float>(count) + step + wider,
+                                       top - wider, top + step + wider, kInfinity};
+                    const std::uint64_t bits = bands.reached(first, step, count);
+                    for (int k = 0; k < 64; ++k) {
+                        const float right = static_cast<float>(k) * step;
+                        const Window box{first.left + right, first.right + right, first.top,
+                                         first.bottom, kInfinity};
+                        const bool in_row = (bits >> k & 1U) != 0;
+                        EXPECT_EQ(in_row, k < count && bands.reach(box)) << count << " " << k;
+                        reached += in_row ? 1 : 0;
+                    }
+                }
+            }
+        }
+    }
+    EXPECT_GT(reached, 1000);
+}
+
 TEST(SceneTracer, LeavesPixelsThatAreFullOfPrimitivesToEmbree) {
     std::mt19937 random(16);
     std::vector<Sphere> dust;

@@ -175,6 +175,21 @@ std::uint64_t ClusterBands::Cover::met(const Window& first, float step, int coun
     const int top = rows_.band(first.top);
     const int bottom = rows_.band(first.bottom - kInside);
     std::uint64_t found = 0;
+    // Where each box is a column of its own, columns follow each other as boxes do.
+    const int begin = columns_.band(first.left);
+    const float last = static_cast<float>(count - 1) * step;
+    if (begin == columns_.band(first.right - kInside) &&
+        columns_.band(first.left + last) == begin + count - 1 &&
+        columns_.band(first.right + last - kInside) == begin + count - 1) {
+        const auto word = static_cast<std::size_t>(begin) / 64;
+        const auto shift = static_cast<unsigned>(begin) % 64;
+        for (int row = top; row <= bottom; ++row) {
+            const std::uint64_t* const cells = &cells_[static_cast<std::size_t>(row) * words_];
+            found |= cells[word] >> shift;
+            if (shift > 0 && word + 1 < words_) found |= cells[word + 1] << (64 - shift);
+        }
+        return found & ~std::uint64_t{0} >> static_cast<unsigned>(64 - count);
+    }
     for (int k = 0; k < count; ++k) {
         const float moved = static_cast<float>(k) * step;
         const int left = columns_.band(first.left + moved);

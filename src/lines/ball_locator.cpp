@@ -102,10 +102,11 @@ void BallLocator::locate(const IdentifyFunction& identify, std::vector<Crossing>
     }
     seen_.resize(points_.size());
     identify(points_, seen_);
-    confirm();
 
     crossings.reserve(crossings.size() + count_);
+    std::size_t checked = 0;
     for (std::size_t number = 0; number < batches; ++number) {
+        checked = confirm(number, checked);
         take_crossings(batches_[number], used_of(number), crossings, left);
     }
 }
@@ -149,6 +150,21 @@ void BallLocator::take_crossings(const Batch& batch, int used, std::vector<Cross
     }
 }
 
+void BallLocator::add(const SampleGrid& grid, std::span<const SuspectEdge> edges,
+                      const BallTable& table) {
+    count_ = edges.size();
+    if (batches_.size() * kLanes < count_) batches_.resize((count_ + kLanes - 1) / kLanes);
+    for (std::size_t first = 0; first < count_; first += kLanes) {
+        Batch& batch = batches_[first / kLanes];
+        const std::size_t some = std::min<std::size_t>(kLanes, count_ - first);
+        find_edge_balls(grid, edges.subspan(first, some), table, batch.lanes, batch.first,
+                        batch.second);
+        for (int lane = 0; lane < kLanes; ++lane) {
+            batch.edge[lane] = static_cast<std::uint32_t>(first) + static_cast<std::uint32_t>(lane);
+        }
+    }
+}
+
 void BallLocator::search(Batch& batch, int lane) const {
     const EdgeLanes& lanes = batch.lanes;
     const std::optional<Prediction> found = predict_crossing(
@@ -187,15 +203,16 @@ void BallLocator::list_checks(std::size_t number, int used) {
     }
 }
 
-/// Predictions that the ray beside them does not confirm become none.
-void BallLocator::confirm() {
-    for (std::size_t n = 0; n < checked_.size(); ++n) {
-        Batch& batch = batches_[checked_[n] / kLanes];
-        const auto lane = static_cast<int>(checked_[n] % kLanes);
+/// Predictions of a batch that the ray beside them does not confirm become none. `checked` is where
+/// the batch's checks begin; returns where they end.
+std::size_t BallLocator::confirm(std::size_t number, std::size_t checked) {
+    Batch& batch = batches_[number];
+    for (; checked < checked_.size() && checked_[checked] / kLanes == number; ++checked) {
+        const auto lane = static_cast<int>(checked_[checked] % kLanes);
         std::int32_t& kind = batch.predictions.kind[lane];
-        const SurfaceKey seen = seen_[n];
+        const SurfaceKey seen = seen_[checked];
         // Of limbs only one surface will do. No branch: which one cannot be guessed.
-        const auto is = [&](const Ends& ends, std::int32_t unless) {
+        const auto is = [&](const EdgeEnds& ends, std::int32_t unless) {
             return (ends.object[lane] ^ seen.object) | (ends.primitive[lane] ^ seen.primitive) |
                    static_cast<std::uint32_t>(kind == unless);
         };
@@ -203,6 +220,7 @@ void BallLocator::confirm() {
             kind = PredictionLanes::kNone;
         }
     }
+    return checked;
 }
 
 }  // namespace ink

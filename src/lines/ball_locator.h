@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "lines/detect.h"
+#include "lines/edge_balls.h"
 #include "lines/locate.h"
 #include "lines/predict_lanes.h"
 #include "sampling/samples.h"
@@ -44,24 +45,21 @@ class BallLocator {
         put(first, lane, batch.lanes.first, batch.first);
         put(second, lane, batch.lanes.second, batch.second);
     }
+    /// Takes all suspect edges of a grid whose points see balls of the table or the background.
+    void add(const SampleGrid& grid, std::span<const SuspectEdge> edges, const BallTable& table);
     /// Adds crossings, and to `left` the edges that are left, in the order in which they came.
     void locate(const IdentifyFunction& identify, std::vector<Crossing>& crossings,
                 std::vector<std::uint32_t>& left);
 
   private:
-    /// What the ends of sixteen edges saw, beside the balls themselves.
-    struct Ends {
-        Lanes<GeometryId> id;
-        Lanes<std::uint32_t> object, primitive;
-    };
     struct Batch {
         EdgeLanes lanes;
-        Ends first, second;
+        EdgeEnds first, second;
         Lanes<std::uint32_t> edge;
         PredictionLanes predictions;
     };
 
-    static void put(const BallHit& hit, int lane, BallLanes& balls, Ends& ends) {
+    static void put(const BallHit& hit, int lane, BallLanes& balls, EdgeEnds& ends) {
         balls.x[lane] = hit.ball.centre.x;
         balls.y[lane] = hit.ball.centre.y;
         balls.z[lane] = hit.ball.centre.z;
@@ -73,7 +71,7 @@ class BallLocator {
     }
     void search(Batch& batch, int lane) const;
     void list_checks(std::size_t number, int used);
-    void confirm();
+    std::size_t confirm(std::size_t number, std::size_t checked);
     void take_crossings(const Batch& batch, int used, std::vector<Crossing>& crossings,
                         std::vector<std::uint32_t>& left) const;
 

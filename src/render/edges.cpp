@@ -82,6 +82,20 @@ bool has_balls_only(const Pipeline& pipeline) {
     return !pipeline.goes_on();
 }
 
+/// Of a scene of nothing but balls, each of which has an ID of its own.
+std::optional<BallTable> one_set_of_balls(const Pipeline& pipeline) {
+    const auto& objects = pipeline.scene.objects();
+    if (objects.size() != 1 || pipeline.ids.level(0) != IdLevel::primitive) return {};
+    const auto& spheres = std::get<Spheres>(objects[0].shape);
+    if (!spheres.copies.empty() || spheres.spheres.empty()) return {};
+    static_assert(sizeof(Sphere) == 4 * sizeof(float));
+    return BallTable{0, pipeline.ids.first(0),
+                     reinterpret_cast<const float*>(spheres.spheres.data())};
+}
+
+/// For less than a quarter of a tile no other one is begun: the margin would often be one.
+int spare(int margin, int side) { return std::min(2 * margin, side / 4); }
+
 }  // namespace
 
 Edges::Edges(const Pipeline& shared)
@@ -123,6 +137,7 @@ Edges::Edges(const Pipeline& shared)
             behind.push_back(make_peeled_frame(shared.scene, shared.tracer, *shared.frame, layer));
         }
     }
+    if (balls_only) balls = one_set_of_balls(shared);
     const Camera& camera = shared.camera;
     detect.least_jump = 0.2F * camera.least_footprint() / static_cast<float>(q);
     const Camera::RayField& rays = camera.ray_field();
@@ -134,8 +149,9 @@ Edges::Edges(const Pipeline& shared)
     const Size size = shared.settings.size;
     no_lines =
         LineDensity(-margin, -margin, size.width + margin, size.height + margin, ink.widest());
-    search_tiles =
-        cut_into_tiles({size.width + 2 * margin, size.height + 2 * margin}, shared.settings.tile);
+    const int side = shared.settings.tile;
+    search_tiles = cut_into_tiles({size.width + 2 * margin, size.height + 2 * margin}, side,
+                                  spare(margin, side));
     for (Tile& tile : search_tiles) {
         tile = {tile.x0 - margin, tile.y0 - margin, tile.x1 - margin, tile.y1 - margin};
         const Tile seen{std::max(tile.x0, 0), std::max(tile.y0, 0), std::min(tile.x1, size.width),
@@ -209,7 +225,7 @@ void Edges::apply_distance(Segment& segment) const {
 std::size_t Edges::search_tile_at(Vec2f point) const {
     const int side = pipeline.settings.tile;
     const auto tile = [&](float at, int size) {
-        const int tiles = (size + 2 * margin + side - 1) / side;
+        const int tiles = count_tiles(size + 2 * margin, side, spare(margin, side));
         return std::clamp((static_cast<int>(std::floor(at)) + margin) / side, 0, tiles - 1);
     };
     const Size size = pipeline.settings.size;
@@ -219,7 +235,8 @@ std::size_t Edges::search_tile_at(Vec2f point) const {
 
 std::size_t Edges::search_tiles_across() const {
     const int side = pipeline.settings.tile;
-    return static_cast<std::size_t>((pipeline.settings.size.width + 2 * margin + side - 1) / side);
+    const int width = pipeline.settings.size.width;
+    return static_cast<std::size_t>(count_tiles(width + 2 * margin, side, spare(margin, side)));
 }
 
 std::size_t Edges::style_of(LineType type, std::uint32_t object) const {

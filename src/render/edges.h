@@ -2,10 +2,12 @@
 
 #include <cmath>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "lines/density.h"
 #include "lines/detect.h"
+#include "lines/edge_balls.h"
 #include "lines/ink.h"
 #include "lines/line_type.h"
 #include "lines/locate.h"
@@ -88,6 +90,7 @@ struct Edges {
     bool smooth_shading;  ///< blend the colours of pixels that a line cuts
     /// Every geometry is one ball, on which there are no lines.
     bool balls_only;
+    std::optional<BallTable> balls;  ///< then, if they are one set of spheres
     DetectSettings detect;
     LocateSettings locate;
     LineTypes wanted;

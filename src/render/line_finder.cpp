@@ -265,7 +265,11 @@ void locate_hits(const Camera& camera, const PointPacket& points, const HitPacke
 void LineFinder::fill_grid(std::size_t block) {
     Lanes<GeometryId> ids;
     edges_.pipeline.ids.resolve(hits_[block], ids);
-    if (ids_only_) return copy_to_grid(block, ids.data(), grid_.id.data());
+    if (ids_only_) {
+        copy_to_grid(block, ids.data(), grid_.id.data());
+        if (edges_.balls) copy_to_grid(block, hits_[block].t.data(), grid_.t.data());
+        return;
+    }
     std::array<Lanes<float>, 7> values;
     const Shader& shader = edges_.pipeline.shader;
     NormalPacket separate;
@@ -521,7 +525,9 @@ void LineFinder::locate() {
     others_.clear();
     mesh_edges_.clear();
     ball_locator_.begin();
-    for (std::uint32_t k = 0; k < suspects_.size(); ++k) {
+    const bool one_set = ids_only_ && edges_.balls;
+    if (one_set) ball_locator_.add(grid_, suspects_, *edges_.balls);
+    for (std::uint32_t k = 0; !one_set && k < suspects_.size(); ++k) {
         const SuspectEdge& edge = suspects_[k];
         const int i = edge.i + (edge.down ? 0 : 1);
         const int j = edge.j + (edge.down ? 1 : 0);

@@ -13,8 +13,12 @@ struct Tile {
     int x0, y0, x1, y1;  ///< pixels, x1 and y1 exclusive; x0, y0 multiples of kBlockSide
 };
 
-/// The picture cut into squares of `side` pixels, row by row.
-std::vector<Tile> cut_into_tiles(Size size, int side);
+/// How many tiles of `side` pixels a length is cut into. The last one may have up to `spare` pixels
+/// more: to begin another for so few would cost more.
+int count_tiles(int length, int side, int spare);
+
+/// The picture cut into squares of `side` pixels, row by row; the last ones likewise.
+std::vector<Tile> cut_into_tiles(Size size, int side, int spare = 0);
 
 /// The blocks of a tile, which the sampler has entered, split by whether any ray through a point
 /// within `reach` pixels of the block can hit the scene.
