@@ -177,12 +177,12 @@ TEST(Draft, DrawsTheLinesOfThePictureInFullInTheirPlacesAndWidths) {
 }
 
 /// A bumpy sheet of triangles of some pixels in a picture of 300.
-std::string fine_mesh(int side) {
+std::string fine_mesh(int side, double height = 2.0) {
     std::string text = fmt::format("OFF\n{} {} 0\n", side * side, 2 * (side - 1) * (side - 1));
     for (int i = 0; i < side * side; ++i) {
         const double x = i % side;
         const double y = i / side;
-        text += fmt::format("{} {} {}\n", x, y, 2.0 * std::sin(0.3 * x) * std::cos(0.2 * y));
+        text += fmt::format("{} {} {}\n", x, y, height * std::sin(0.3 * x) * std::cos(0.2 * y));
     }
     for (int i = 0; i < side * (side - 1); ++i) {
         if (i % side == side - 1) continue;
@@ -198,11 +198,59 @@ TEST(Draft, KeepsTheToneOfLinesBetweenFacesThatAreSmallerThanItsLattice) {
     Settings settings;
     settings.set("size", "300x300").set("compose", "lines").set("lines", "mesh");
     const double full = mean_ink(renderer.render(settings));
-    for (const auto& [share, tolerance] : {std::pair{0.75, 0.08}, {0.5, 0.08}, {0.25, 0.15}}) {
+    for (const auto& [share, tolerance] : {std::pair{0.75, 0.08}, {0.5, 0.08}, {0.25, 0.08}}) {
         RenderOptions options;
         options.draft = share;
         EXPECT_NEAR(mean_ink(renderer.render(settings, options)), full, tolerance * full) << share;
     }
+}
+
+TEST(Draft, DrawsLinesBetweenFacesOfARegularMeshWhereThePictureInFullDoes) {
+    const TemporaryFolder folder;
+    // Some triangles are larger than cells of the lattice, some are smaller.
+    for (const int side : {10, 60}) {
+        const Renderer renderer = draft_scene(folder.write("flat.off", fine_mesh(side, 0.0)));
+        Settings settings;
+        settings.set("size", "300x300").set("compose", "lines").set("line-width", "1");
+        settings.set("lines", "silhouette,intersection,self-occlusion,boundary,mesh");
+        settings.set("eye", "40,25,60").set("look-at", "5,5,0").set("up", "0,1,0");
+        if (side == 60) settings.set("eye", "40,25,260").set("look-at", "30,30,0");
+        const Picture full = renderer.render(settings);
+        for (const double share : {0.5, 0.25}) {
+            RenderOptions options;
+            options.draft = share;
+            EXPECT_LT(mean_difference(renderer.render(settings, options), full),
+                      0.12 * mean_ink(full))
+                << side << ", " << share;
+        }
+    }
+}
+
+TEST(Draft, DrawsNoLinesBetweenFacesBesideTheMesh) {
+    const TemporaryFolder folder;
+    const Renderer renderer = draft_scene(folder.write("fine.off", fine_mesh(60)));
+    Settings settings;
+    settings.set("size", "300x300").set("compose", "lines").set("lines", "all");
+    settings.set("line-width", "1");
+    // One that has no ink here nor in any pixel around it.
+    const Picture full = renderer.render(settings);
+    RenderOptions options;
+    options.draft = 0.25;
+    const Picture draft = renderer.render(settings, options);
+    const auto is_clear = [](const Picture& picture, int x, int y) {
+        return picture.rgba()[static_cast<std::size_t>(4 * (y * 300 + x))] == 255;
+    };
+    int beside = 0;
+    for (int y = 2; y < 298; ++y) {
+        for (int x = 2; x < 298; ++x) {
+            bool clear = true;
+            for (int k = 0; k < 25; ++k) {
+                clear = clear && is_clear(full, x + k % 5 - 2, y + k / 5 - 2);
+            }
+            beside += clear && !is_clear(draft, x, y) ? 1 : 0;
+        }
+    }
+    EXPECT_LT(beside, 20);
 }
 
 TEST(Draft, LetsNoColorRunAcrossALine) {

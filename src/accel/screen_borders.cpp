@@ -1,5 +1,6 @@
 #include "accel/screen_borders.h"
 
+#include <algorithm>
 #include <bit>
 
 // Everything between the two namespace macros is built once for each instruction set.
@@ -13,23 +14,59 @@
 HWY_BEFORE_NAMESPACE();
 namespace ink::HWY_NAMESPACE {
 
-/// A triangle's three sides at a time: each lies as x, y, dx, dy.
+using Four = hn::FixedTag<float, 4>;
+constexpr Four kFour;
+using Sides = hn::Vec<Four>;
+
+/// A triangle's three sides beside each other, the third one twice.
+struct SideLanes {
+    Sides x, y, dx, dy;
+
+    explicit SideLanes(const FormNumbers& form) {
+        const auto first = hn::LoadU(kFour, form.data());
+        const auto second = hn::LoadU(kFour, form.data() + 4);
+        const auto third = hn::LoadU(kFour, form.data() + 8);
+        const auto starts = hn::InterleaveLower(kFour, first, second);
+        const auto ways = hn::InterleaveUpper(kFour, first, second);
+        const auto last_start = hn::InterleaveLower(kFour, third, third);
+        const auto last_way = hn::InterleaveUpper(kFour, third, third);
+        x = hn::ConcatLowerLower(kFour, last_start, starts);
+        y = hn::ConcatUpperUpper(kFour, last_start, starts);
+        dx = hn::ConcatLowerLower(kFour, last_way, ways);
+        dy = hn::ConcatUpperUpper(kFour, last_way, ways);
+    }
+};
+
 void find_packet_sides(const ScreenPacket& packet, PacketSides& sides) {
-    using Four = hn::FixedTag<float, 4>;
-    constexpr Four kFour;
     for (std::size_t lane = 0; lane < kLanes; ++lane) {
-        const float* const form = packet.forms[lane].data();
-        const auto first = hn::LoadU(kFour, form);
-        const auto second = hn::LoadU(kFour, form + 4);
-        const auto third = hn::LoadU(kFour, form + 8);
-        const auto pair = hn::InterleaveUpper(kFour, first, second);
-        const auto last = hn::InterleaveUpper(kFour, third, third);
-        const auto dx = hn::ConcatLowerLower(kFour, last, pair);
-        const auto dy = hn::ConcatUpperUpper(kFour, last, pair);
+        const auto [x, y, dx, dy] = SideLanes(packet.forms[lane]);
         const auto length = hn::Sqrt(hn::Add(hn::Mul(dx, dx), hn::Mul(dy, dy)));
         const auto scale = hn::Div(hn::Set(kFour, 1.0F), hn::Max(length, hn::Set(kFour, 1e-20F)));
         hn::StoreU(hn::Neg(hn::Mul(dy, scale)), kFour, sides[lane].x.data());
         hn::StoreU(hn::Mul(dx, scale), kFour, sides[lane].y.data());
+    }
+}
+
+/// Of each side twice the area between it and the point, over twice that of the triangle.
+void find_front_sides(const Front& front, const ScreenPacket* packets, SidesPacket& all) {
+    for (int i = 0; i < kLanes; ++i) {
+        TriangleSides& sides = all[static_cast<std::size_t>(i)];
+        const std::uint32_t winner = front.winner[i];
+        const bool hit = front.depth[i] < kInfinity && front.depth[i] > -kInfinity;
+        if (!hit || packets[winner / kLanes].kind != ClusterKind::triangles) {
+            sides = TriangleSides::none();
+            continue;
+        }
+        const auto [x, y, dx, dy] = SideLanes(packets[winner / kLanes].forms[winner % kLanes]);
+        const auto qx = hn::Set(kFour, front.x[i]);
+        const auto qy = hn::Set(kFour, front.y[i]);
+        const auto areas = hn::Sub(hn::Mul(dx, hn::Sub(qy, y)), hn::Mul(dy, hn::Sub(qx, x)));
+        hn::StoreU(areas, kFour, sides.inside.data());
+        const float area = sides.inside[0] + sides.inside[1] + sides.inside[2];
+        const auto scale = hn::Set(kFour, 1.0F / std::max(area, 1e-20F));
+        hn::StoreU(hn::Mul(areas, scale), kFour, sides.inside.data());
+        hn::StoreU(hn::Neg(hn::Mul(dy, scale)), kFour, sides.dx.data());
+        hn::StoreU(hn::Mul(dx, scale), kFour, sides.dy.data());
     }
 }
 
@@ -79,11 +116,16 @@ HWY_AFTER_NAMESPACE();
 
 namespace ink {
 
+HWY_EXPORT(find_front_sides);
 HWY_EXPORT(find_packet_sides);
 HWY_EXPORT(measure_front);
 
 void find_sides(const ScreenPacket& packet, PacketSides& sides) {
     HWY_DYNAMIC_DISPATCH(find_packet_sides)(packet, sides);
+}
+
+void find_sides(const Front& front, const ScreenPacket* packets, SidesPacket& sides) {
+    HWY_DYNAMIC_DISPATCH(find_front_sides)(front, packets, sides);
 }
 
 void measure(const Front& front, const ScreenPacket* packets, const PacketSides* sides,

@@ -23,4 +23,7 @@ void find_sides(const ScreenPacket& packet, PacketSides& sides);
 void measure(const Front& front, const ScreenPacket* packets, const PacketSides* sides,
              BorderPacket& borders);
 
+/// The triangles that the front's points hit.
+void find_sides(const Front& front, const ScreenPacket* packets, SidesPacket& sides);
+
 }  // namespace ink

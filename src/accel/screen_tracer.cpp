@@ -87,6 +87,12 @@ class ScreenTileTracer final : public TileTracer {
                      normals[k]);
         }
     }
+    bool find_sides(std::size_t first, std::span<SidesPacket> sides) override {
+        for (std::size_t k = 0; k < sides.size(); ++k) {
+            ink::find_sides(fronts_[first + k], store_.packets(), sides[k]);
+        }
+        return true;
+    }
     void identify(std::span<const PointPacket> points, std::span<const RayPacket> rays,
                   std::span<HitPacket> hits) override;
     bool needs_rays() const override { return false; }

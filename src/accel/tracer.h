@@ -71,6 +71,20 @@ struct BorderPacket {
     Lanes<float> nx, ny;    ///< unit, across that side
 };
 
+/// The sides of a triangle from a point of the screen. The fourth of each is nothing.
+struct TriangleSides {
+    /// How far inside the point is, in shares of the triangle's height over that side: on the
+    /// screen a barycentric coordinate.
+    std::array<float, 4> inside;
+    std::array<float, 4> dx, dy;  ///< by how much a pixel's step changes it
+
+    /// No side is anywhere near.
+    static TriangleSides none() { return {{0.5F, 0.5F, 0.5F, 0.5F}, {}, {}}; }
+};
+
+/// Of the triangles that sixteen points see; where they see none, of none.
+using SidesPacket = std::array<TriangleSides, kLanes>;
+
 struct ScreenBox {
     float left, top, right, bottom;  ///< pixels
 };
@@ -112,6 +126,10 @@ class TileTracer {
     /// triangles that they hit. Only if the frame `measures_borders`, and after `want_borders`.
     virtual void want_borders() {}
     virtual void measure(std::size_t /*first*/, std::span<BorderPacket> /*borders*/) {}
+    /// Likewise, but without `want_borders`: the triangles that they hit. False if it cannot tell.
+    virtual bool find_sides(std::size_t /*first*/, std::span<SidesPacket> /*sides*/) {
+        return false;
+    }
 
     /// After `find`, of packets `first` and on, without rays: the hits but for barycentric
     /// coordinates, t only if `distances`, with normals that are unit and face the viewer; and the

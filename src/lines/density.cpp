@@ -11,18 +11,16 @@ namespace {
 
 int floor_divide(int a, int b) { return (a >= 0 ? a : a - b + 1) / b; }
 
-/// Squares must be wide enough for a single line, and a bundle of three, to count as sparse.
-constexpr int kLeastSide = 16;
 constexpr float kWidths = 9.0F;
 
 }  // namespace
 
-LineDensity::LineDensity(int x0, int y0, int x1, int y1, float widest)
+LineDensity::LineDensity(int x0, int y0, int x1, int y1, float widest, int least_side)
     : x0_(x0),
       y0_(y0),
       x1_(x1),
       y1_(y1),
-      side_(std::max(kLeastSide, static_cast<int>(std::ceil(kWidths * widest)))),
+      side_(std::max(least_side, static_cast<int>(std::ceil(kWidths * widest)))),
       i0_(floor_divide(x0, side_) - 1),
       j0_(floor_divide(y0, side_) - 1),
       across_(floor_divide(x1 - 1, side_) - i0_ + 2),

@@ -22,8 +22,12 @@ class LineDensity {
   public:
     LineDensity() = default;
     /// Over pixels [x0, x1) x [y0, y1), the part of the screen that is searched for lines. `widest`
-    /// is the greatest width of a line, pixels: the squares are several times as wide.
-    LineDensity(int x0, int y0, int x1, int y1, float widest);
+    /// is the greatest width of a line, pixels: the squares are several times as wide, and no
+    /// narrower than `least_side`.
+    LineDensity(int x0, int y0, int x1, int y1, float widest, int least_side = kLeastSide);
+
+    /// Squares must be wide enough for a single line, and a bundle of three, to count as sparse.
+    static constexpr int kLeastSide = 16;
 
     void add(const InkStroke& stroke, float width) {
         const Vec2f d = stroke.b - stroke.a;

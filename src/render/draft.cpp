@@ -13,7 +13,6 @@
 #include "camera/views.h"
 #include "render/edges_method.h"
 #include "render/enlarge.h"
-#include "render/face_density.h"
 #include "render/pipeline.h"
 #include "render/scaled.h"
 
@@ -32,7 +31,7 @@ Settings fewer_pixels(const Settings& settings, const Enlargement& enlargement) 
 
 /// Segments of the small picture become those of the large one, in the tiles in which its
 /// `LineDrawer` looks for them.
-FoundLines enlarged(const FoundLines& found, const Enlargement& enlargement, const Edges& large) {
+FoundLines enlarged(FoundLines& found, const Enlargement& enlargement, const Edges& large) {
     FoundLines result;
     result.tiles.resize(large.search_tiles.size());
     for (const TileLines& tile : found.tiles) {
@@ -50,17 +49,14 @@ FoundLines enlarged(const FoundLines& found, const Enlargement& enlargement, con
         density->enlarge(enlargement.factor(), enlargement.small_middle(),
                          enlargement.large_middle());
     }
-    if (found.faces) {
-        result.faces.emplace(*found.faces, enlargement.large(), enlargement.columns(),
-                             enlargement.rows());
-    }
+    result.tiling = std::move(found.tiling);
     return result;
 }
 
 /// Enlarges the shaded pixels, and sharpens them along the lines.
 void enlarge_film(const Film& small, std::span<const Tile> tiles,
                   const std::vector<TileLines>& lines, const Enlargement& enlargement,
-                  WorkLoop& loop, Film& large) {
+                  WorkLoop& loop, FaceTiling* faces, Film& large) {
     const PixelEnlarger enlarger(enlargement, small.display());
     constexpr std::size_t kRows = 32;
     const auto height = static_cast<std::size_t>(enlargement.large().height);
@@ -71,7 +67,7 @@ void enlarge_film(const Film& small, std::span<const Tile> tiles,
     });
     // Each cell of the lattice belongs to one tile, so threads write different pixels.
     loop.run(tiles.size(), [&](std::size_t i, std::size_t) {
-        enlarger.sharpen(tiles[i], lines[i].segments, large);
+        enlarger.sharpen(tiles[i], lines[i].segments, large, faces);
     });
 }
 
@@ -85,16 +81,10 @@ RenderStats render_fewer_rays(const Pipeline& few, const Pipeline& full,
     FoundLines found = find_lines(small, loop, stats);
     {
         const Timer timer(stats.shade_ms);
-        enlarge_film(few.film, small.search_tiles, found.tiles, enlargement, loop, full.film);
+        enlarge_film(few.film, small.search_tiles, found.tiles, enlargement, loop,
+                     found.tiling ? &*found.tiling : nullptr, full.film);
     }
     add_hidden_strokes(small, found);
-    if (found.faces) {
-        const LineDensity faces = face_density(small, *found.faces, enlargement.factor(), loop);
-        for (LineDensity* density : {&found.thinning.all, &found.thinning.direct}) {
-            *density += faces;
-            density->finish();
-        }
-    }
     FoundLines lines;
     with_threads(threads, [&] { lines = enlarged(found, enlargement, large); });
     draw_lines(large, lines, loop, stats);
@@ -122,8 +112,10 @@ Film render_draft(const Scene& scene, const Tracer& tracer, const Settings& sett
     std::optional<Pipeline> small;
     std::optional<Pipeline> large;
     const LineOutput inked{.ink = wanted.draws_lines(), .drawing = nullptr};
-    const LineOutput kept{
-        .ink = wanted.draws_lines(), .drawing = nullptr, .segments = true, .counts_faces = false};
+    const LineOutput kept{.ink = wanted.draws_lines(),
+                          .drawing = nullptr,
+                          .segments = true,
+                          .enlargement = &enlargement};
     RenderStats result;
     with_threads(wanted.threads, [&] {
         small.emplace(scene, tracer, few, small_film, kept, true, control.ambient, control.cancel);
@@ -134,7 +126,7 @@ Film render_draft(const Scene& scene, const Tracer& tracer, const Settings& sett
     } else {
         result = render_stencils(*small, control);
         WorkLoop loop(result.threads, control, 1);
-        enlarge_film(small_film, {}, {}, enlargement, loop, film);
+        enlarge_film(small_film, {}, {}, enlargement, loop, nullptr, film);
     }
     timer.reset();
     result.render_ms = render_ms;

@@ -8,6 +8,7 @@
 
 #include "accel/peeled_tracer.h"
 #include "base/error.h"
+#include "render/enlarge.h"
 
 namespace ink {
 
@@ -147,8 +148,12 @@ Edges::Edges(const Pipeline& shared)
     const int reach = static_cast<int>(std::ceil(find_lines ? ink.reach() : 1.0F)) + 1;
     margin = (reach + kBlockSide - 1) / kBlockSide * kBlockSide;
     const Size size = shared.settings.size;
-    no_lines =
-        LineDensity(-margin, -margin, size.width + margin, size.height + margin, ink.widest());
+    // In a draft the squares are as large as in the picture in full.
+    const auto* enlargement = shared.lines.enlargement;
+    const float enlarged = enlargement != nullptr ? enlargement->factor() : 1.0F;
+    const auto least_side = static_cast<int>(std::ceil(LineDensity::kLeastSide / enlarged));
+    no_lines = LineDensity(-margin, -margin, size.width + margin, size.height + margin,
+                           ink.widest(), least_side);
     const int side = shared.settings.tile;
     search_tiles = cut_into_tiles({size.width + 2 * margin, size.height + 2 * margin}, side,
                                   spare(margin, side));

@@ -162,14 +162,18 @@ FoundLines find_lines(const Edges& edges, WorkLoop& loop, RenderStats& stats) {
     found.tiles.resize(edges.search_tiles.size());
     found.toned.resize(edges.search_tiles.size());
     found.hidden.resize(edges.search_tiles.size());
-    if (edges.draws_borders()) {
+    if (edges.wants_faces() && pipeline.lines.enlargement != nullptr) {
+        found.tiling.emplace(pipeline.scene, pipeline.camera.projection(),
+                             *pipeline.lines.enlargement);
+    } else if (edges.draws_borders()) {
         found.borders.emplace(pipeline.settings.size, edges.ink.reach(),
                               edges.ink.has_several_inks());
     } else if (edges.wants_faces()) {
         found.faces.emplace(pipeline.scene, pipeline.settings.size, edges.q);
     }
     const FaceMaps maps{found.faces ? &*found.faces : nullptr,
-                        found.borders ? &*found.borders : nullptr};
+                        found.borders ? &*found.borders : nullptr,
+                        found.tiling ? &*found.tiling : nullptr};
     std::optional<RidgeSearch> ridges;
     if (edges.wants_ridges()) {
         ridges.emplace(pipeline, edges.viewpoint, edges.q, edges.search_area(), loop.threads());
@@ -226,7 +230,8 @@ void draw_lines(const Edges& edges, const FoundLines& found, WorkLoop& loop, Ren
         if (!drawers[worker]) {
             drawers[worker] = std::make_unique<LineDrawer>(
                 edges, found.thinning, found.faces ? &*found.faces : nullptr,
-                vertices ? &*vertices : nullptr, found.borders ? &*found.borders : nullptr);
+                vertices ? &*vertices : nullptr, found.borders ? &*found.borders : nullptr,
+                found.tiling ? &*found.tiling : nullptr);
         }
         drawers[worker]->draw(edges.draw_tiles[i], found.tiles);
     });

@@ -8,6 +8,7 @@
 #include "render/border_map.h"
 #include "render/edges.h"
 #include "render/face_map.h"
+#include "render/face_tiling.h"
 #include "render/pipeline.h"
 
 namespace ink {
@@ -20,6 +21,7 @@ struct FoundLines {
     LineThinning thinning;                     ///< where they are dense
     std::optional<FaceMap> faces;              ///< for lines between faces
     std::optional<BorderMap> borders;          ///< likewise, instead
+    std::optional<FaceTiling> tiling;          ///< likewise, on a larger picture
 };
 
 /// Shades the film and finds its lines.

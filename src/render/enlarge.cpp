@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/multiversion.h"
+#include "render/face_tiling.h"
 
 namespace ink {
 
@@ -15,15 +16,6 @@ namespace {
 float place(int at, int large, int small, float factor) {
     const float from_middle = static_cast<float>(at) + 0.5F - 0.5F * static_cast<float>(large);
     return 0.5F * static_cast<float>(small) + from_middle / factor - 0.5F;
-}
-
-std::vector<int> nearest(int large, int small, float factor) {
-    std::vector<int> result(static_cast<std::size_t>(large));
-    for (int k = 0; k < large; ++k) {
-        const auto near = static_cast<int>(std::lround(place(k, large, small, factor)));
-        result[static_cast<std::size_t>(k)] = std::clamp(near, 0, small - 1);
-    }
-    return result;
 }
 
 constexpr std::uint32_t kOne = 256;
@@ -94,13 +86,6 @@ Enlargement::Enlargement(Size large, double share)
         std::max(1, static_cast<int>(std::ceil(static_cast<float>(large.width) / factor_ - 1e-4F)));
 }
 
-std::vector<int> Enlargement::columns() const {
-    return nearest(large_.width, small_.width, factor_);
-}
-std::vector<int> Enlargement::rows() const {
-    return nearest(large_.height, small_.height, factor_);
-}
-
 PixelEnlarger::PixelEnlarger(const Enlargement& enlargement, const DisplayImage& pixels)
     : enlargement_(enlargement),
       pixels_(pixels),
@@ -135,7 +120,8 @@ void PixelEnlarger::enlarge_row(int y, Film& film) const {
                 out.size(), out.data());
 }
 
-void PixelEnlarger::sharpen(const Tile& tile, std::span<const Segment> lines, Film& film) const {
+void PixelEnlarger::sharpen(const Tile& tile, std::span<const Segment> lines, Film& film,
+                            FaceTiling* faces) const {
     const auto cell_of = [](const Segment& s) {
         return std::pair{static_cast<int>(std::floor((s.a.x + s.b.x) * 0.5F - 0.5F)),
                          static_cast<int>(std::floor((s.a.y + s.b.y) * 0.5F - 0.5F))};
@@ -146,14 +132,14 @@ void PixelEnlarger::sharpen(const Tile& tile, std::span<const Segment> lines, Fi
         while (last < lines.size() && cell_of(lines[last]) == cell) ++last;
         const auto [x, y] = cell;
         if (x >= tile.x0 && x < tile.x1 && y >= tile.y0 && y < tile.y1) {
-            sharpen_cell(x, y, lines.subspan(first, last - first), film);
+            sharpen_cell(x, y, lines.subspan(first, last - first), film, faces);
         }
         first = last;
     }
 }
 
-void PixelEnlarger::sharpen_cell(int column, int row, std::span<const Segment> lines,
-                                 Film& film) const {
+void PixelEnlarger::sharpen_cell(int column, int row, std::span<const Segment> lines, Film& film,
+                                 FaceTiling* faces) const {
     if (std::ranges::none_of(lines, divides)) return;
     const Size size = pixels_.size;
     std::array<std::uint32_t, 4> corners;
@@ -181,6 +167,10 @@ void PixelEnlarger::sharpen_cell(int column, int row, std::span<const Segment> l
             const float below = point.y - places[0].y;
             std::array<float, 4> weights{(1 - right) * (1 - below), right * (1 - below),
                                          (1 - right) * below, right * below};
+            const auto heaviest = [&] {
+                return static_cast<int>(std::ranges::max_element(weights) - weights.begin());
+            };
+            const int nearest = heaviest();
             for (const Segment& line : lines) {
                 if (!divides(line)) continue;
                 const float side = side_of(line, point);
@@ -191,6 +181,9 @@ void PixelEnlarger::sharpen_cell(int column, int row, std::span<const Segment> l
             constexpr float kLeast = 1e-3F;
             if (weights[0] + weights[1] + weights[2] + weights[3] < kLeast) continue;
             film.display_row(y)[static_cast<std::size_t>(x)] = mixed(corners, weights);
+            if (faces == nullptr) continue;
+            const int seen = heaviest();
+            if (seen != nearest) faces->look_at(x, y, column + seen % 2, row + seen / 2);
         }
     }
 }

@@ -31,9 +31,6 @@ class Enlargement {
     Vec2f shrunk(Vec2f point) const {
         return small_middle() + (point - large_middle()) * (1.0F / factor_);
     }
-    /// For each column or row of the large picture, the one of the small picture that is nearest.
-    std::vector<int> columns() const;
-    std::vector<int> rows() const;
 
   private:
     static Vec2f middle_of(Size size) {
@@ -44,6 +41,8 @@ class Enlargement {
     float factor_;
 };
 
+class FaceTiling;
+
 /// Enlarges finished pixels: mixes them in proportion, but not across lines.
 class PixelEnlarger {
   public:
@@ -53,7 +52,10 @@ class PixelEnlarger {
     /// Mixes anew the pixels in a tile's cells that lines run through, from those pixels only that
     /// lie on the same side. The segments are those of the small picture, the ones of a cell in
     /// sequence; tiles may be done at the same time.
-    void sharpen(const Tile& tile, std::span<const Segment> lines, Film& film) const;
+    /// `faces` learns which pixels see another point's surface than that of the nearest one; null
+    /// if nobody asks.
+    void sharpen(const Tile& tile, std::span<const Segment> lines, Film& film,
+                 FaceTiling* faces) const;
 
   private:
     /// Between which two columns or rows of the small picture those of the large picture lie.
@@ -62,7 +64,8 @@ class PixelEnlarger {
         std::vector<std::int32_t> first, second;
         std::vector<std::uint32_t> share;  ///< of the second, in 1 / 256
     };
-    void sharpen_cell(int column, int row, std::span<const Segment> lines, Film& film) const;
+    void sharpen_cell(int column, int row, std::span<const Segment> lines, Film& film,
+                      FaceTiling* faces) const;
 
     Enlargement enlargement_;
     const DisplayImage& pixels_;

@@ -48,44 +48,6 @@ FaceMap::FaceMap(const Scene& scene, Size size, int lattice)
     }
 }
 
-FaceMap::FaceMap(const FaceMap& small, Size size, const std::vector<int>& column_of,
-                 const std::vector<int>& row_of)
-    : meshes_(small.meshes_),
-      first_(small.first_),
-      size_(size),
-      lattice_(1),
-      blocks_across_((size.width + kBlockSide - 1) / kBlockSide),
-      blocks_down_((size.height + kBlockSide - 1) / kBlockSide),
-      triangles_(static_cast<std::size_t>(blocks_across_) *
-                 static_cast<std::size_t>(blocks_down_)) {
-    // Where the small picture has it, in a row of its blocks.
-    std::vector<int> place;
-    for (const int x : column_of) place.push_back(x / kBlockSide * kLanes + x % kBlockSide);
-    constexpr std::size_t kRows = 32;
-    const auto enlarge_rows = [&](std::size_t begin, std::size_t end) {
-        std::vector<std::uint32_t> line(
-            static_cast<std::size_t>(blocks_across_) * std::size_t{kBlockSide}, kNone);
-        int last = -1;  // several rows come from one
-        for (auto y = static_cast<int>(begin); y < static_cast<int>(end); ++y) {
-            const int from_y = row_of[static_cast<std::size_t>(y)];
-            const Lanes<std::uint32_t>* const from =
-                small.triangles_.data() + small.block(0, from_y);
-            const int first = lane(0, from_y);
-            for (std::size_t x = 0; from_y != last && x < place.size(); ++x) {
-                line[x] = from[place[x] / kLanes][place[x] % kLanes + first];
-            }
-            last = from_y;
-            Lanes<std::uint32_t>* const row = triangles_.data() + block(0, y);
-            for (int b = 0; b < blocks_across_; ++b) {
-                std::copy_n(line.data() + b * kBlockSide, kBlockSide, row[b].data() + lane(0, y));
-            }
-        }
-    };
-    parallel_ranges(static_cast<std::size_t>(size.height), kRows, enlarge_rows);
-    const int bottom = (blocks_down_ - 1) * kBlockSide;
-    for (int x = 0; x < size.width; x += kBlockSide) clear_beyond(x, bottom);
-}
-
 FaceMap::Triangle FaceMap::triangle(std::uint32_t number) const {
     const auto after = std::ranges::upper_bound(first_, number);
     const auto object = static_cast<std::uint32_t>(after - first_.begin()) - 1;

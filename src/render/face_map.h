@@ -20,12 +20,6 @@ class FaceMap {
     /// For `lattice` points along a pixel's side.
     FaceMap(const Scene& scene, Size size, int lattice);
 
-    /// What the pixels of a larger picture see, if each sees what the nearest one of the `small`
-    /// picture does. `column_of` and `row_of` name that one for each column and row. No cells of it
-    /// can be marked.
-    FaceMap(const FaceMap& small, Size size, const std::vector<int>& column_of,
-            const std::vector<int>& row_of);
-
     const Mesh* mesh(std::uint32_t object) const {
         return meshes_[object];
     }  ///< null: another shape

@@ -20,7 +20,7 @@ void LineDrawer::draw(const Tile& tile, const std::vector<TileLines>& found) {
     {
         const Timer phase(stats_.ink_ms);
         gather(tile, found);
-        if (near_.empty() && !face_edges_ && borders_ == nullptr) return;
+        if (near_.empty() && !face_edges_ && borders_ == nullptr && tiling_ == nullptr) return;
         ink_.begin(tile.x0, tile.y0, tile.x1 - tile.x0, tile.y1 - tile.y0);
         thinning_.scales_at(middles_, scales_);
         for (std::size_t k = 0; k < near_.size(); ++k) {
@@ -29,7 +29,11 @@ void LineDrawer::draw(const Tile& tile, const std::vector<TileLines>& found) {
                       stroke.direct ? scales_[k] * stroke.width_scale : width_scale(stroke));
             if (stroke.gap > 0.0F) leave_gap(stroke);
         }
-        if (face_edges_) ink_faces(tile);
+        if (face_edges_) {
+            face_edges_->enter(tile);
+            ink_faces(tile, *face_edges_);
+        }
+        if (tiling_ != nullptr) ink_faces(tile, *tiling_);
         if (borders_ != nullptr) ink_borders(tile);
         ink_.finish();
     }
@@ -88,13 +92,12 @@ float LineDrawer::cue_depth(int x, int y, const NearestEdges& nearest,
 
 /// Calls `draw(x, y, nearest edges, strength, style, width)` for each block of the tile that has
 /// lines between faces, once a style.
-template <class Draw>
-void LineDrawer::for_each_face_block(const Tile& tile, Draw draw) {
-    face_edges_->enter(tile);
+template <class Faces, class Draw>
+void LineDrawer::for_each_face_block(const Tile& tile, Faces& faces, Draw draw) {
     middles_.clear();
     for (int y = tile.y0; y < tile.y1; y += kBlockSide) {
         for (int x = tile.x0; x < tile.x1; x += kBlockSide) {
-            if (!face_edges_->sees(x, y)) continue;
+            if (!faces.sees(x, y)) continue;
             middles_.push_back({static_cast<float>(x) + 0.5F * kBlockSide,
                                 static_cast<float>(y) + 0.5F * kBlockSide});
         }
@@ -105,9 +108,9 @@ void LineDrawer::for_each_face_block(const Tile& tile, Draw draw) {
     const float* scale_of_block = scales_.data();
     for (int y = tile.y0; y < tile.y1; y += kBlockSide) {
         for (int x = tile.x0; x < tile.x1; x += kBlockSide) {
-            if (!face_edges_->sees(x, y)) continue;
+            if (!faces.sees(x, y)) continue;
             const float thinned = *scale_of_block++;
-            if (!face_edges_->measure(x, y, edges_.ink.reach(), nearest)) continue;
+            if (!faces.measure(x, y, edges_.ink.reach(), nearest)) continue;
             Lanes<float> strength;
             const float scale = cue_depth(x, y, nearest, strength) * thinned;
             const auto draw_style = [&](std::uint32_t object, const NearestEdges& edges) {
@@ -123,11 +126,11 @@ void LineDrawer::for_each_face_block(const Tile& tile, Draw draw) {
                     rest.distance, [](float distance) { return distance < kInfinity; });
                 if (first == rest.distance.end()) break;
                 const auto lane = static_cast<int>(first - rest.distance.begin());
-                const std::uint32_t object = faces_->triangle(rest.triangle[lane]).object;
+                const std::uint32_t object = object_of(rest.triangle[lane]);
                 NearestEdges own = rest;
                 for (int i = 0; i < kLanes; ++i) {
-                    const bool is_own = rest.distance[i] < kInfinity &&
-                                        faces_->triangle(rest.triangle[i]).object == object;
+                    const bool is_own =
+                        rest.distance[i] < kInfinity && object_of(rest.triangle[i]) == object;
                     (is_own ? rest : own).distance[i] = kInfinity;
                 }
                 draw_style(object, own);
@@ -136,12 +139,14 @@ void LineDrawer::for_each_face_block(const Tile& tile, Draw draw) {
     }
 }
 
-void LineDrawer::ink_faces(const Tile& tile) {
-    for_each_face_block(tile, [&](int x, int y, const NearestEdges& edges,
-                                  const Lanes<float>& strength, std::size_t style, float width) {
-        ink_.draw_faces(x - tile.x0, y - tile.y0, edges.distance, edges.nx, edges.ny, edges.t,
-                        strength, style, width);
-    });
+template <class Faces>
+void LineDrawer::ink_faces(const Tile& tile, Faces& faces) {
+    for_each_face_block(tile, faces,
+                        [&](int x, int y, const NearestEdges& edges, const Lanes<float>& strength,
+                            std::size_t style, float width) {
+                            ink_.draw_faces(x - tile.x0, y - tile.y0, edges.distance, edges.nx,
+                                            edges.ny, edges.t, strength, style, width);
+                        });
 }
 
 void LineDrawer::ink_borders(const Tile& tile) {
@@ -182,21 +187,24 @@ void LineDrawer::write_planes(const Tile& tile, const std::vector<TileLines>& fo
 }
 
 void LineDrawer::add_face_planes(const Tile& tile) {
-    for_each_face_block(tile, [&](int x, int y, const NearestEdges& edges, const Lanes<float>&,
-                                  std::size_t, float width) {
-        for (int i = 0; i < kLanes; ++i) {
-            const int column = x + i % kBlockSide - tile.x0;
-            const int row = y + i / kBlockSide - tile.y0;
-            if (edges.distance[i] == kInfinity || x + i % kBlockSide >= tile.x1 ||
-                y + i / kBlockSide >= tile.y1) {
-                continue;
+    face_edges_->enter(tile);
+    for_each_face_block(
+        tile, *face_edges_,
+        [&](int x, int y, const NearestEdges& edges, const Lanes<float>&, std::size_t,
+            float width) {
+            for (int i = 0; i < kLanes; ++i) {
+                const int column = x + i % kBlockSide - tile.x0;
+                const int row = y + i / kBlockSide - tile.y0;
+                if (edges.distance[i] == kInfinity || x + i % kBlockSide >= tile.x1 ||
+                    y + i / kBlockSide >= tile.y1) {
+                    continue;
+                }
+                const FaceMap::Triangle seen = faces_->triangle(edges.triangle[i]);
+                const GeometryId id = edges_.pipeline.ids.resolve(seen.object, seen.primitive);
+                planes_.add(column, row, edges.distance[i], width,
+                            {edges.t[i], LineType::mesh, id, id});
             }
-            const FaceMap::Triangle seen = faces_->triangle(edges.triangle[i]);
-            const GeometryId id = edges_.pipeline.ids.resolve(seen.object, seen.primitive);
-            planes_.add(column, row, edges.distance[i], width,
-                        {edges.t[i], LineType::mesh, id, id});
-        }
-    });
+        });
 }
 
 /// Tiles whose lines may reach a tile, which is one of them as far as it lies on the film. A

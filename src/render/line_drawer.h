@@ -12,6 +12,7 @@
 #include "render/border_map.h"
 #include "render/edges.h"
 #include "render/face_edges.h"
+#include "render/face_tiling.h"
 #include "render/tiles.h"
 
 namespace ink {
@@ -19,11 +20,11 @@ namespace ink {
 /// Draws the lines of one tile after another.
 class LineDrawer {
   public:
-    /// `faces` and `vertices`, or `borders`, are what lines between faces are drawn from; null if
-    /// there are none.
+    /// `faces` and `vertices`, or `borders`, or `tiling`, are what lines between faces are drawn
+    /// from; null if there are none.
     LineDrawer(const Edges& edges, const LineThinning& thinning, const FaceMap* faces,
-               const ScreenVertices* vertices, const BorderMap* borders)
-        : edges_(edges), thinning_(thinning), ink_(edges.ink), borders_(borders) {
+               const ScreenVertices* vertices, const BorderMap* borders, const FaceTiling* tiling)
+        : edges_(edges), thinning_(thinning), ink_(edges.ink), borders_(borders), tiling_(tiling) {
         if (faces == nullptr) return;
         face_edges_.emplace(edges.pipeline.camera.projection(), *faces, *vertices);
         faces_ = faces;
@@ -42,9 +43,13 @@ class LineDrawer {
     void leave_gap(const InkStroke& stroke);
     float width_scale(const InkStroke& stroke) const;
     float cue_depth(int x, int y, const NearestEdges& nearest, Lanes<float>& strength) const;
-    template <class Draw>
-    void for_each_face_block(const Tile& tile, Draw draw);
-    void ink_faces(const Tile& tile);
+    template <class Faces, class Draw>
+    void for_each_face_block(const Tile& tile, Faces& faces, Draw draw);
+    template <class Faces>
+    void ink_faces(const Tile& tile, Faces& faces);
+    std::uint32_t object_of(std::uint32_t triangle) const {
+        return faces_ != nullptr ? faces_->triangle(triangle).object : triangle;
+    }
     void ink_borders(const Tile& tile);
     void write_planes(const Tile& tile, const std::vector<TileLines>& found);
     void add_face_planes(const Tile& tile);
@@ -53,6 +58,7 @@ class LineDrawer {
     const LineThinning& thinning_;
     InkTile ink_;
     const BorderMap* borders_;
+    const FaceTiling* tiling_;
     const FaceMap* faces_ = nullptr;
     std::optional<FaceEdges> face_edges_;
     LinePlanes planes_;

@@ -126,6 +126,10 @@ void LineFinder::trace_lattice(const Tile& tile) {
             map_borders(first, count);
             timer.lap(stats_.lines_ms);
         }
+        if (tiling_ != nullptr) {
+            map_tiling(first, count);
+            timer.lap(stats_.lines_ms);
+        }
         if (front_) shade(first, count);
         timer.lap(stats_.shade_ms);
     }

@@ -17,6 +17,7 @@
 #include "render/border_map.h"
 #include "render/edges.h"
 #include "render/face_map.h"
+#include "render/face_tiling.h"
 #include "render/ridge_search.h"
 #include "render/specular_search.h"
 #include "render/tiles.h"
@@ -26,10 +27,11 @@
 
 namespace ink {
 
-/// Where to put what lines between faces are drawn from: one of the two, or neither.
+/// Where to put what lines between faces are drawn from: one of them, or none.
 struct FaceMaps {
     FaceMap* faces = nullptr;
     BorderMap* borders = nullptr;
+    FaceTiling* tiling = nullptr;
 };
 
 /// Finds the lines of one tile after another. Arrays over blocks have one entry a block that is
@@ -87,6 +89,7 @@ class LineFinder {
           ids_only_(front && edges.balls_only),
           faces_(maps.faces),
           borders_(maps.borders),
+          tiling_(maps.tiling),
           faces_end_(faces_ != nullptr && !edges.outlines_cover_faces()),
           ridges_(ridges),
           sampler_(frame, edges.pipeline.camera, edges.q),
@@ -169,6 +172,7 @@ class LineFinder {
     bool see_mesh(int i, int j, SurfaceKey& key) const;
     void identify(std::span<const Vec2f> points, std::span<SurfaceKey> out);
     void map_borders(std::size_t first, std::size_t count);
+    void map_tiling(std::size_t first, std::size_t count);
     void map_faces(const Tile& tile);
     void map_block(int x, int y);
     void add_face_density(std::size_t block);
@@ -218,6 +222,7 @@ class LineFinder {
     bool saw_anything_ = false;
     FaceMap* faces_;
     BorderMap* borders_;
+    FaceTiling* tiling_;
     bool faces_end_;  ///< lines between faces end where another line is in front
     RidgeSearch* ridges_;
     Sampler sampler_;
@@ -239,6 +244,7 @@ class LineFinder {
     std::vector<Block> blocks_;
     std::vector<HitPacket> hits_;
     std::vector<BorderPacket> border_packets_;
+    std::vector<SidesPacket> sides_;
     std::vector<NormalPacket> normals_;
     std::vector<ColorPacket> colors_;
     std::vector<std::uint8_t> seen_;

@@ -2,6 +2,7 @@
 // keeps for that, and their crossings where other lines run or somebody wants data.
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -23,11 +24,34 @@ void LineFinder::map_borders(std::size_t first, std::size_t count) {
     }
 }
 
+/// Keeps the triangles that the points of some blocks see, and counts their sides.
+void LineFinder::map_tiling(std::size_t first, std::size_t count) {
+    sides_.resize(count);
+    const bool known = sampler_.take_sides(first, sides_);
+    for (std::size_t k = 0; k < count; ++k) {
+        const Block& block = blocks_[first + k];
+        if (block.columns < kBlockSide || block.rows < kBlockSide) continue;
+        const HitPacket& hits = hits_[first + k];
+        tiling_->put(block.x, block.y, hits, known ? &sides_[k] : nullptr);
+        // Squares of a density are several points wide, so a quarter of all will do.
+        constexpr std::array kPoints{2, 4, 11, 13};
+        constexpr float kArea = static_cast<float>(kLanes) / static_cast<float>(kPoints.size());
+        for (const int lane : kPoints) {
+            const float length = tiling_->length_at(block.x, block.y, lane) * kArea;
+            if (length == 0.0F) continue;
+            const std::size_t style = edges_.style_of(LineType::mesh, hits.object[lane]);
+            const Vec2f place{static_cast<float>(block.x + lane % kBlockSide) + 0.5F,
+                              static_cast<float>(block.y + lane / kBlockSide) + 0.5F};
+            density_.add(place, length, edges_.ink.styles[style].width_px);
+            if (specular_) direct_density_.add(place, length, edges_.ink.styles[style].width_px);
+        }
+    }
+}
+
 /// Keeps what pixel centres, or the lattice points next to them, see.
 void LineFinder::map_faces(const Tile& tile) {
     const Timer timer(stats_.lines_ms);
-    const bool counts = edges_.pipeline.lines.counts_faces;
-    for (std::size_t k = 0; counts && k < blocks_.size(); ++k) {
+    for (std::size_t k = 0; k < blocks_.size(); ++k) {
         // Those cut off at the tile's end belong to the next tile, which may be at work.
         const bool whole = blocks_[k].columns == kBlockSide && blocks_[k].rows == kBlockSide;
         if (whole) add_face_density(k);

@@ -21,12 +21,15 @@
 
 namespace ink {
 
+class Enlargement;
+
 /// What becomes of the lines that method "edges" finds.
 struct LineOutput {
     bool ink = true;             ///< drawn on the film
     Drawing* drawing = nullptr;  ///< null: not kept
     bool segments = false;       ///< kept in full with the lines found, whoever needs them
-    bool counts_faces = true;    ///< how dense lines between faces are, see face_density
+    /// To the larger picture that they are drawn on, see render_draft; null: to this one.
+    const Enlargement* enlargement = nullptr;
 };
 
 /// What every method works with.

@@ -137,6 +137,10 @@ void Sampler::take_borders(std::size_t first, std::span<BorderPacket> borders) {
     if (found_) tracer_->measure(first, borders);
 }
 
+bool Sampler::take_sides(std::size_t first, std::span<SidesPacket> sides) {
+    return found_ && tracer_->find_sides(first, sides);
+}
+
 void Sampler::take_hits(std::size_t first, std::span<HitPacket> hits) {
     const auto points = this->points().subspan(first, hits.size());
     const auto rays = std::span(packets_).subspan(first, hits.size());

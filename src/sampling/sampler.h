@@ -65,6 +65,8 @@ class Sampler {
     /// that they hit; those of strips are left out. Only if the frame can tell.
     void want_borders();
     void take_borders(std::size_t first, std::span<BorderPacket> borders);
+    /// Likewise, the triangles that they hit, without being wanted before. False if it cannot tell.
+    bool take_sides(std::size_t first, std::span<SidesPacket> sides);
 
     /// Takes both wishes back: from now on, points alone are asked for.
     void want_points_only();

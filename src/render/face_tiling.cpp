@@ -1,0 +1,255 @@
+#include "render/face_tiling.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <numbers>
+#include <variant>
+
+#include "render/screen_vertices.h"
+
+namespace ink {
+
+namespace {
+
+/// Whether an edge of a triangle lies within a polygon, or has a line of another type.
+bool has_no_line(const Mesh& mesh, std::uint32_t triangle, std::size_t edge) {
+    if (!mesh.edge_flags.empty() && mesh.is_boundary(triangle, edge)) return true;
+    if (mesh.faces.empty() || mesh.twins.empty()) return false;
+    const std::uint32_t twin = mesh.twins[3 * std::size_t{triangle} + edge];
+    return twin < Mesh::kManyTwins && mesh.faces[twin / 3] == mesh.faces[triangle];
+}
+
+}  // namespace
+
+FaceTiling::FaceTiling(const Scene& scene, const Projection& projection,
+                       const Enlargement& enlargement)
+    : projection_(projection),
+      small_(enlargement.small()),
+      large_(enlargement.large()),
+      factor_(enlargement.factor()),
+      blocks_across_((small_.width + kBlockSide - 1) / kBlockSide),
+      seen_(static_cast<std::size_t>(blocks_across_) *
+            static_cast<std::size_t>((small_.height + kBlockSide - 1) / kBlockSide)),
+      spots_(seen_.size() * kLanes) {
+    for (const Object& object : scene.objects()) {
+        meshes_.push_back(std::get_if<Mesh>(&object.shape));
+    }
+    const auto blocks = [](int pixels) {
+        return static_cast<std::size_t>((pixels + kBlockSide - 1) / kBlockSide);
+    };
+    columns_.resize(blocks(large_.width));
+    rows_.resize(blocks(large_.height));
+    for (std::size_t k = 0; k < columns_.size(); ++k) {
+        for (int i = 0; i < kLanes; ++i) {
+            const auto x = static_cast<float>(static_cast<int>(k) * kBlockSide + i % kBlockSide);
+            const float at = enlargement.shrunk({x + 0.5F, 0.0F}).x;
+            const int near = std::clamp(static_cast<int>(std::floor(at)), 0, small_.width - 1);
+            columns_[k].nearest[static_cast<std::size_t>(i % kBlockSide)] = near;
+            columns_[k].off[i] = (at - static_cast<float>(near) - 0.5F) * factor_;
+        }
+    }
+    for (std::size_t k = 0; k < rows_.size(); ++k) {
+        for (int i = 0; i < kLanes; ++i) {
+            const auto y = static_cast<float>(static_cast<int>(k) * kBlockSide + i / kBlockSide);
+            const float at = enlargement.shrunk({0.0F, y + 0.5F}).y;
+            const int near = std::clamp(static_cast<int>(std::floor(at)), 0, small_.height - 1);
+            rows_[k].nearest[static_cast<std::size_t>(i / kBlockSide)] = near;
+            rows_[k].off[i] = (at - static_cast<float>(near) - 0.5F) * factor_;
+        }
+    }
+    aside_.resize(columns_.size() * rows_.size() * kLanes);
+}
+
+void FaceTiling::put(int x, int y, const HitPacket& hits, const SidesPacket* sides) {
+    if (x < 0 || y < 0 || x >= small_.width || y >= small_.height) return;
+    const std::size_t k = block(x, y);
+    Spot* const spots = spots_.data() + k * kLanes;
+    bool any = false;
+    for (int i = 0; i < kLanes; ++i) {
+        Spot& spot = spots[i];
+        const std::uint32_t object = hits.object[i];
+        const Mesh* const mesh = object == kNoObject ? nullptr : meshes_[object];
+        spot.object = kNone;
+        if (mesh == nullptr) continue;
+        any = true;
+        const std::uint32_t triangle = hits.primitive[i];
+        const Vec2f point{static_cast<float>(x + i % kBlockSide) + 0.5F,
+                          static_cast<float>(y + i / kBlockSide) + 0.5F};
+        const TriangleSides own = sides != nullptr ? (*sides)[static_cast<std::size_t>(i)]
+                                                   : project_sides(*mesh, triangle, point);
+        std::uint32_t without = 0;
+        if (!mesh->edge_flags.empty() || !mesh->faces.empty()) {
+            for (std::size_t edge = 0; edge < 3; ++edge) {
+                without |= has_no_line(*mesh, triangle, edge) ? 1U << edge : 0U;
+            }
+        }
+        spot = {{own.inside[0], own.inside[1]},
+                {own.dx[0], own.dx[1]},
+                {own.dy[0], own.dy[1]},
+                hits.t[i],
+                object << 3U | without};
+    }
+    seen_[k] = any ? 1 : 0;
+}
+
+TriangleSides FaceTiling::project_sides(const Mesh& mesh, std::uint32_t triangle,
+                                        Vec2f point) const {
+    std::array<Vec2f, 3> corners;
+    for (std::size_t k = 0; k < 3; ++k) {
+        const ScreenPoint seen =
+            project(projection_, to_double(mesh.vertices[mesh.triangles[triangle][k]]));
+        if (seen.width <= 0.0F) return TriangleSides::none();  // behind the eye
+        corners[k] = {seen.x, seen.y};
+    }
+    const Vec2f u = corners[1] - corners[0];
+    const Vec2f v = corners[2] - corners[0];
+    const float area = u.x * v.y - u.y * v.x;
+    TriangleSides sides = TriangleSides::none();
+    if (area == 0.0F) return sides;
+    for (std::size_t k = 0; k < 3; ++k) {
+        const Vec2f side = corners[(k + 1) % 3] - corners[k];
+        const Vec2f way = point - corners[k];
+        sides.inside[k] = (side.x * way.y - side.y * way.x) / area;
+        sides.dx[k] = -side.y / area;
+        sides.dy[k] = side.x / area;
+    }
+    return sides;
+}
+
+/// By Cauchy's way of counting: half of the sides over the area. Of polygons, too: the picture in
+/// full counts triangles (LineFinder::add_face_density).
+float FaceTiling::length_at(int x, int y, int lane) const {
+    const Spot& spot = spots_[block(x, y) * kLanes + static_cast<std::size_t>(lane)];
+    if (spot.object == kNone) return 0.0F;
+    float length = 0.0F;
+    for (unsigned k = 0; k < 3; ++k) {
+        const float dx = k < 2 ? spot.dx[k] : -spot.dx[0] - spot.dx[1];
+        const float dy = k < 2 ? spot.dy[k] : -spot.dy[0] - spot.dy[1];
+        length += std::sqrt(dx * dx + dy * dy);
+    }
+    // The lattice of the picture in full notices only one of the lines that cross between two
+    // neighbours; how many do is about a matter of chance.
+    const float most = 0.5F * std::numbers::pi_v<float> * factor_;
+    return most * (1.0F - std::exp(-length / most));
+}
+
+bool FaceTiling::sees(int x, int y) const {
+    const auto& columns = columns_[static_cast<std::size_t>(x / kBlockSide)].nearest;
+    const auto& rows = rows_[static_cast<std::size_t>(y / kBlockSide)].nearest;
+    const auto seen = [&](int column, int row) { return seen_[block(column, row)] != 0; };
+    return seen(columns.front(), rows.front()) || seen(columns.back(), rows.front()) ||
+           seen(columns.front(), rows.back()) || seen(columns.back(), rows.back());
+}
+
+void FaceTiling::look_at(int x, int y, int column, int row) {
+    const auto bx = static_cast<std::size_t>(x / kBlockSide);
+    const auto by = static_cast<std::size_t>(y / kBlockSide);
+    const int right = column - columns_[bx].nearest[static_cast<std::size_t>(x % kBlockSide)];
+    const int below = row - rows_[by].nearest[static_cast<std::size_t>(y % kBlockSide)];
+    const int code = 1 + (std::clamp(below, -1, 1) + 1) * 3 + std::clamp(right, -1, 1) + 1;
+    const auto lane = static_cast<std::size_t>(y % kBlockSide * kBlockSide + x % kBlockSide);
+    aside_[(by * columns_.size() + bx) * kLanes + lane] = static_cast<std::uint8_t>(code);
+}
+
+TilingLines FaceTiling::lines_of(const Spot& spot) const {
+    TilingLines lines;
+    const float shrink = 1.0F / factor_;
+    for (unsigned k = 0; k < 3; ++k) {
+        const bool third = k == 2;
+        const float dx = third ? -spot.dx[0] - spot.dx[1] : spot.dx[k];
+        const float dy = third ? -spot.dy[0] - spot.dy[1] : spot.dy[k];
+        const float inside = third ? 1.0F - spot.inside[0] - spot.inside[1] : spot.inside[k];
+        const float steep = std::sqrt(dx * dx + dy * dy);
+        if ((spot.object >> k & 1U) != 0) continue;
+        const float height = 1.0F / std::max(steep, 1e-20F);
+        lines.families[lines.count++] = {inside,      dx * shrink, dy * shrink,
+                                         dx * height, dy * height, height * factor_};
+    }
+    return lines;
+}
+
+/// Whether all pixels of a block lie about one point of the small picture.
+bool FaceTiling::is_plain(const std::uint8_t* aside, const Places& columns,
+                          const Places& rows) const {
+    std::array<std::uint64_t, 2> any;
+    static_assert(sizeof(any) == kLanes);
+    std::memcpy(any.data(), aside, sizeof(any));
+    return (any[0] | any[1]) == 0 && columns.nearest.front() == columns.nearest.back() &&
+           rows.nearest.front() == rows.nearest.back();
+}
+
+bool FaceTiling::measure(int x, int y, float reach, NearestEdges& nearest) const {
+    const auto bx = static_cast<std::size_t>(x / kBlockSide);
+    const auto by = static_cast<std::size_t>(y / kBlockSide);
+    const Places& columns = columns_[bx];
+    const Places& rows = rows_[by];
+    const std::uint8_t* const aside = aside_.data() + (by * columns_.size() + bx) * kLanes;
+    if (!is_plain(aside, columns, rows)) {
+        measure_points(aside, columns, rows, nearest);
+    } else {
+        const int column = columns.nearest.front();
+        const int row = rows.nearest.front();
+        if (seen_[block(column, row)] == 0) return false;
+        const Spot& one = spot(column, row);
+        if (one.object == kNone) return false;
+        find_nearest(lines_of(one), columns.off, rows.off, nearest);
+        nearest.t.fill(one.t);
+        nearest.triangle.fill(one.object >> 3U);
+    }
+    bool any = false;
+    for (int i = 0; i < kLanes; ++i) any |= nearest.distance[i] < reach;
+    return any;
+}
+
+/// Point by point of those that the pixels of a block lie about.
+void FaceTiling::measure_points(const std::uint8_t* aside, const Places& columns,
+                                const Places& rows, NearestEdges& nearest) const {
+    nearest.distance.fill(kInfinity);
+    nearest.nx.fill(1.0F);
+    nearest.ny.fill(0.0F);
+    nearest.t.fill(0.0F);
+    nearest.triangle.fill(0);
+    Lanes<std::int32_t> column;
+    Lanes<std::int32_t> row;
+    Lanes<float> off_x = columns.off;
+    Lanes<float> off_y = rows.off;
+    for (int i = 0; i < kLanes; ++i) {
+        column[i] = columns.nearest[static_cast<std::size_t>(i % kBlockSide)];
+        row[i] = rows.nearest[static_cast<std::size_t>(i / kBlockSide)];
+        if (aside[i] == 0) continue;
+        const int right = (aside[i] - 1) % 3 - 1;
+        const int below = (aside[i] - 1) / 3 - 1;
+        column[i] += right;
+        row[i] += below;
+        off_x[i] -= static_cast<float>(right) * factor_;
+        off_y[i] -= static_cast<float>(below) * factor_;
+    }
+    std::uint32_t left = 0xFFFFU;
+    while (left != 0) {
+        const int first = std::countr_zero(left);
+        std::uint32_t own = 0;
+        for (int i = first; i < kLanes; ++i) {
+            own |= column[i] == column[first] && row[i] == row[first] ? 1U << i : 0U;
+        }
+        left &= ~own;
+        const int at = std::clamp(column[first], 0, small_.width - 1);
+        const int down = std::clamp(row[first], 0, small_.height - 1);
+        if (seen_[block(at, down)] == 0) continue;
+        const Spot& one = spot(at, down);
+        if (one.object == kNone) continue;
+        NearestEdges found;
+        find_nearest(lines_of(one), off_x, off_y, found);
+        for (; own != 0; own &= own - 1) {
+            const int i = std::countr_zero(own);
+            nearest.distance[i] = found.distance[i];
+            nearest.nx[i] = found.nx[i];
+            nearest.ny[i] = found.ny[i];
+            nearest.t[i] = one.t;
+            nearest.triangle[i] = one.object >> 3U;
+        }
+    }
+}
+
+}  // namespace ink
