@@ -99,20 +99,6 @@ TEST(Pace, TakesMoreRaysAgainWhenFramesBecomeCheap) {
     EXPECT_EQ(pace.scale(), 1.0);
 }
 
-TEST(Pace, TakesAsManyRaysAsItIsTold) {
-    Pace pace;
-    pace.plain_took(10.0);
-    pace.keep_above(0.375);
-    for (int k = 0; k < 20; ++k) {
-        pace.frame_took(pace.scale(), 100.0 * pace.scale());
-        EXPECT_GE(pace.scale(), 0.375);
-    }
-    EXPECT_EQ(pace.scale(), 0.375);
-    pace.keep_above(0.0);
-    for (int k = 0; k < 20; ++k) pace.frame_took(pace.scale(), 100.0 * pace.scale());
-    EXPECT_EQ(pace.scale(), 0.25);
-}
-
 TEST(ScaledSettings, KeepTheShareOfInk) {
     Scene scene;
     scene.load(sample());

@@ -36,11 +36,6 @@ void Pace::forget() {
     frames_ = 0;
 }
 
-void Pace::keep_above(double least_scale) {
-    last_step_ = least_scale > 0.0 ? step_of(least_scale) : kSteps - 1;
-    go_to(std::min(step_, last_step_));
-}
-
 void Pace::go_to(std::size_t step) {
     if (step != step_) frames_ = 0;
     step_ = step;
@@ -102,7 +97,7 @@ void Pace::choose() {
         constexpr double kVery = 1.5;
         constexpr std::size_t kSome = 3;
         if (frames_ > 0 && frames_ < kSome && now < kVery * target_ms_) return;
-        for (std::size_t step = step_ + 1; step <= last_step_; ++step) {
+        for (std::size_t step = step_ + 1; step < kSteps; ++step) {
             if (expected_ms(step) <= target_ms_) return go_to(step);
         }
         const std::size_t cheapest = cheapest_step();
@@ -119,7 +114,7 @@ void Pace::choose() {
 /// Where none is fast enough: as many rays as cost next to nothing.
 std::size_t Pace::cheapest_step() const {
     std::size_t cheapest = 0;
-    for (std::size_t step = 1; step <= last_step_; ++step) {
+    for (std::size_t step = 1; step < kSteps; ++step) {
         if (expected_ms(step) < expected_ms(cheapest)) cheapest = step;
     }
     const double bearable_ms = kNothing * expected_ms(cheapest);

@@ -20,8 +20,6 @@ class Pace {
     void full_took(double ms);
     /// Another scene: what frames took tells nothing any more.
     void forget();
-    /// No fewer rays than that; one of the shares that it chooses among, or 0.
-    void keep_above(double least_scale);
     double target_ms() const { return target_ms_; }
 
   private:
@@ -37,7 +35,6 @@ class Pace {
 
     double target_ms_ = kLongest;
     std::size_t step_ = 0;                    ///< index into the scales
-    std::size_t last_step_ = kSteps - 1;      ///< that may be chosen
     std::array<double, kSteps> took_ms_{};    ///< a frame, of late; 0 where that is not known
     std::array<double, kFrames> frame_ms_{};  ///< the last ones of this step, in a ring
     std::size_t frames_ = 0;                  ///< of this step

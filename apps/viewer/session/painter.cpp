@@ -112,7 +112,6 @@ void Painter::finish(Painting painting) {
 }
 
 void Painter::quick(const PaintRequest& request) {
-    pace_.keep_above(request.least_scale);
     const double scale = pace_.scale();
     const Settings settings = quick_settings(request.settings);
     const auto start = Clock::now();

@@ -23,9 +23,8 @@ using Clock = std::chrono::steady_clock;
 /// What to draw.
 struct PaintRequest {
     std::shared_ptr<const Renderer> renderer;
-    Settings settings;         ///< of the picture in full
-    bool in_motion = false;    ///< a quick picture first, since the next request is near
-    double least_scale = 0.0;  ///< rays along a pixel's side that it takes at least
+    Settings settings;       ///< of the picture in full
+    bool in_motion = false;  ///< a quick picture first, since the next request is near
     Clock::time_point asked{};
 };
 

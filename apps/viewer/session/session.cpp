@@ -25,9 +25,6 @@ std::string scene_key(const Settings& settings) {
     return key;
 }
 
-/// Where lines run between the faces of a mesh, fewer rays would miss too many of the faces.
-constexpr double kLeastWithFaces = 0.375;
-
 Vec3d to_vector(const std::array<double, 3>& v) { return {v[0], v[1], v[2]}; }
 
 }  // namespace
@@ -288,15 +285,7 @@ void Session::paint(bool in_motion) {
     if (!renderer_) return;
     Settings settings = settings_;
     settings.set("aov", "none");
-    const double least_scale = draws_faces() ? kLeastWithFaces : 0.0;
-    painter_.paint({renderer_, std::move(settings), in_motion, least_scale, Clock::now()});
-}
-
-/// Whether there may be lines between faces.
-bool Session::draws_faces() const {
-    const std::string lines = settings_.get("lines");
-    return (lines == "all" || lines.find("mesh") != std::string::npos) &&
-           std::ranges::any_of(infos_, [](const FileInfo& info) { return info.kind == "mesh"; });
+    painter_.paint({renderer_, std::move(settings), in_motion, Clock::now()});
 }
 
 bool Session::update() {

@@ -138,7 +138,6 @@ class Session {
     void forget_range(Settings& settings) const;
     void take(LoadResult result);
     void paint(bool in_motion);
-    bool draws_faces() const;
     void apply(Settings settings);
     void fix_camera();
     bool files_are_there();
