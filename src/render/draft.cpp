@@ -85,8 +85,7 @@ RenderStats render_fewer_rays(const Pipeline& few, const Pipeline& full,
                      found.tiling ? &*found.tiling : nullptr, full.film);
     }
     add_hidden_strokes(small, found);
-    FoundLines lines;
-    with_threads(threads, [&] { lines = enlarged(found, enlargement, large); });
+    FoundLines lines = enlarged(found, enlargement, large);
     draw_lines(large, lines, loop, stats);
     return stats.mean_over(threads);
 }

@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "base/multiversion.h"
+#include "render/enlarge_rows.h"
 #include "render/face_tiling.h"
 
 namespace ink {
@@ -19,29 +19,6 @@ float place(int at, int large, int small, float factor) {
 }
 
 constexpr std::uint32_t kOne = 256;
-
-/// The bytes of two pixels, mixed two at a time.
-INKTRACE_INLINE std::uint32_t mix(std::uint32_t a, std::uint32_t b, std::uint32_t share) {
-    constexpr std::uint32_t kEven = 0x00FF00FFU;
-    const std::uint32_t even = (a & kEven) * (kOne - share) + (b & kEven) * share;
-    const std::uint32_t odd = ((a >> 8U) & kEven) * (kOne - share) + ((b >> 8U) & kEven) * share;
-    return ((even >> 8U) & kEven) | (odd & ~kEven);
-}
-
-INKTRACE_MULTIVERSION
-void mix_rows(const std::uint32_t* a, const std::uint32_t* b, std::uint32_t share,
-              std::size_t count, std::uint32_t* __restrict out) {
-    for (std::size_t k = 0; k < count; ++k) out[k] = mix(a[k], b[k], share);
-}
-
-/// The columns of a row, each between two of `row`; shares as in `mix`.
-INKTRACE_MULTIVERSION
-void mix_columns(const std::uint32_t* row, const std::int32_t* first, const std::int32_t* second,
-                 const std::uint32_t* shares, std::size_t count, std::uint32_t* __restrict out) {
-    for (std::size_t k = 0; k < count; ++k) {
-        out[k] = mix(row[first[k]], row[second[k]], shares[k]);
-    }
-}
 
 /// Which side of a segment's line a point lies on.
 float side_of(const Segment& segment, Vec2f point) {
@@ -94,8 +71,10 @@ PixelEnlarger::PixelEnlarger(const Enlargement& enlargement, const DisplayImage&
 
 PixelEnlarger::Between::Between(int large, int small, float factor) {
     const auto count = static_cast<std::size_t>(large);
-    for (auto* const places : {&first, &second}) places->reserve(count);
+    first.reserve(count);
+    second.reserve(count);
     share.reserve(count);
+    twice.reserve(count);
     for (int k = 0; k < large; ++k) {
         const float at =
             std::clamp(place(k, large, small, factor), 0.0F, static_cast<float>(small - 1));
@@ -103,6 +82,7 @@ PixelEnlarger::Between::Between(int large, int small, float factor) {
         second.push_back(std::min(first.back() + 1, small - 1));
         const float of_second = at - static_cast<float>(first.back());
         share.push_back(static_cast<std::uint32_t>(of_second * static_cast<float>(kOne)));
+        twice.push_back(share.back() | share.back() << 16U);
     }
 }
 
@@ -111,13 +91,13 @@ void PixelEnlarger::enlarge_row(int y, Film& film) const {
     const auto row = static_cast<std::size_t>(y);
     const std::uint32_t* const pixels = pixels_.pixels.data();
     thread_local std::vector<std::uint32_t> mixed;
-    mixed.resize(width);
-    mix_rows(pixels + static_cast<std::size_t>(rows_.first[row]) * width,
-             pixels + static_cast<std::size_t>(rows_.second[row]) * width, rows_.share[row], width,
-             mixed.data());
-    const std::span<std::uint32_t> out = film.display_row(y);
-    mix_columns(mixed.data(), columns_.first.data(), columns_.second.data(), columns_.share.data(),
-                out.size(), out.data());
+    mixed.resize(width + kBeyondRow);
+    const auto row_of = [&](const std::vector<std::int32_t>& rows) {
+        return std::span(pixels + static_cast<std::size_t>(rows[row]) * width, width);
+    };
+    mix_rows(row_of(rows_.first), row_of(rows_.second), rows_.share[row], mixed.data());
+    std::fill_n(mixed.data() + width, kBeyondRow, mixed[width - 1]);
+    mix_columns(mixed.data(), columns_.first, columns_.twice.data(), film.display_row(y).data());
 }
 
 void PixelEnlarger::sharpen(const Tile& tile, std::span<const Segment> lines, Film& film,

@@ -63,6 +63,7 @@ class PixelEnlarger {
         Between(int large, int small, float factor);
         std::vector<std::int32_t> first, second;
         std::vector<std::uint32_t> share;  ///< of the second, in 1 / 256
+        std::vector<std::uint32_t> twice;  ///< the same in both halves of each number
     };
     void sharpen_cell(int column, int row, std::span<const Segment> lines, Film& film,
                       FaceTiling* faces) const;
