@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <cstring>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "base/image.h"
@@ -32,6 +33,15 @@ TEST(PlaneMemory, OfLargePlanesBeginsOnALargePage) {
         std::memset(plane, 1, bytes);
         give_plane_memory(plane, bytes);
     }
+}
+
+TEST(PlaneMemory, BeginsOnACacheLineWhateverItsSize) {
+    std::vector<std::pair<void*, std::size_t>> taken;
+    for (std::size_t bytes = 1; bytes < 4 * kMegabyte; bytes = bytes * 3 / 2 + 1) {
+        taken.emplace_back(take_plane_memory(bytes), bytes);
+        EXPECT_EQ(reinterpret_cast<std::uintptr_t>(taken.back().first) % 64, 0U) << bytes;
+    }
+    for (const auto& [plane, bytes] : taken) give_plane_memory(plane, bytes);
 }
 
 TEST(PlaneMemory, OfPlanesOfAnySizeIsTheirsAlone) {

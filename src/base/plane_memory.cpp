@@ -17,6 +17,8 @@ constexpr std::size_t kSmallPage = std::size_t{4} << 10;
 constexpr std::size_t kLargePage = std::size_t{2} << 20;
 /// Less than this the heap keeps by itself.
 constexpr std::size_t kLeast = std::size_t{128} << 10;
+/// Of what is smaller; the rest begins on a page. A packet of lanes begins on a cache line.
+constexpr std::align_val_t kAlignment{64};
 /// The linear colours of 2048 x 2048 pixels.
 constexpr std::size_t kMostKept = std::size_t{64} << 20;
 
@@ -101,7 +103,7 @@ static_assert(std::is_trivially_destructible_v<KeptMemory>);
 }  // namespace
 
 void* take_plane_memory(std::size_t bytes) {
-    if (bytes < kLeast) return ::operator new(bytes);
+    if (bytes < kLeast) return ::operator new(bytes, kAlignment);
     const std::size_t whole = in_pages(bytes);
     if (char* const begin = kept_memory.take(whole)) return begin;
     if (char* const begin = map(whole)) return begin;
@@ -111,7 +113,7 @@ void* take_plane_memory(std::size_t bytes) {
 }
 
 void give_plane_memory(void* begin, std::size_t bytes) noexcept {
-    if (bytes < kLeast) return ::operator delete(begin);
+    if (bytes < kLeast) return ::operator delete(begin, kAlignment);
     kept_memory.give(static_cast<char*>(begin), in_pages(bytes));
 }
 

@@ -4,7 +4,8 @@
 
 namespace ink {
 
-/// Memory for a plane of a picture: not cleared, and in large pages where it is large. What is
+/// Memory for a plane of a picture: not cleared, on a border of 64 bytes, and in large pages where
+/// it is large. What is
 /// given back is kept for the next plane of that size, up to a limit, so that pictures drawn one
 /// after the other do not wait for the system to clear pages. Throws std::bad_alloc. For any
 /// thread.
