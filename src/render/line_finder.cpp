@@ -203,12 +203,11 @@ std::uint32_t LineFinder::lay_block(const Block& block) {
     return static_cast<std::uint32_t>(blocks_.size() - 1);
 }
 
-/// Whether nothing needs more of the lattice than where it hit, and one normal. Ridges need the
-/// same normals from single points.
+/// Whether nothing needs more of the lattice than where it hit, and one normal.
 bool LineFinder::can_take_shades() const {
     const Shader& shader = edges_.pipeline.shader;
     return shader.needs_normals_only() && !shader.has_line_normals() && !edges_.tones &&
-           !specular_ && ridges_ == nullptr;
+           !specular_;
 }
 
 /// Their hits, normals and samples.
