@@ -4,11 +4,13 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <optional>
 #include <tuple>
 #include <utility>
 
 #include "lines/bridges.h"
 #include "lines/end_table.h"
+#include "lines/segment_squares.h"
 
 namespace ink {
 
@@ -18,6 +20,7 @@ using plane::dot;
 using plane::EndTable;
 using plane::length;
 using plane::nearest_on;
+using plane::SegmentSquares;
 using plane::unit;
 
 /// An end of a segment.
@@ -45,7 +48,9 @@ class GapCloser {
 
     std::vector<Segment> run() {
         find_loose();
-        for (const auto& [apart, first, second] : pairs()) {
+        const std::vector<Pair> found = pairs();
+        if (!found.empty()) find_places();
+        for (const auto& [apart, first, second] : found) {
             End& a = loose_[first];
             End& b = loose_[second];
             if (closed_[first] || closed_[second] || is_crossed(a, b)) continue;
@@ -132,6 +137,14 @@ class GapCloser {
                dot(a.way, way) > settings_.least_ahead && dot(b.way, way) < -settings_.least_ahead;
     }
 
+    void find_places() {
+        squares_.emplace(lines_);
+        for (const Segment& line : lines_) {
+            longest_ =
+                std::max({longest_, std::abs(line.b.x - line.a.x), std::abs(line.b.y - line.a.y)});
+        }
+    }
+
     /// Whether another line runs across the gap, or either line ends on one.
     bool is_crossed(const End& a, const End& b) const {
         const Vec2f way = unit(b.point - a.point);
@@ -162,10 +175,12 @@ class GapCloser {
                 line.a == a.point || line.b == a.point || line.a == b.point || line.b == b.point;
             return !own && (beside(line.a) || beside(line.b));
         };
-        for (std::size_t k = 0; k < lines_.size(); ++k) {
-            if (gone_[k] == 0 && crosses(lines_[k])) return true;
-        }
-        return false;
+        const float near = 0.5F * (length(to - from) + longest_) + 2.0F * reach;
+        bool found = false;
+        squares_->near((from + to) * 0.5F, near, [&](std::uint32_t k) {
+            found = found || (gone_[k] == 0 && crosses(lines_[k]));
+        });
+        return found;
     }
 
     /// Whether an end lies within its cell, not on a side of it.
@@ -200,6 +215,8 @@ class GapCloser {
     EndTable table_;
     std::vector<End> loose_;  ///< by place
     std::vector<bool> closed_;
+    std::optional<SegmentSquares> squares_;  ///< of all lines, where ends face each other
+    float longest_ = 0.0F;                   ///< extent of a line in x or y
     std::vector<Segment> bridges_;
 };
 
