@@ -1,0 +1,313 @@
+#include "render/line_finder.h"
+
+#include <algorithm>
+#include <array>
+
+#include "base/multiversion.h"
+
+namespace ink {
+
+namespace {
+
+ScreenBox screen_box(const Block& block, float spacing) {
+    const auto left = static_cast<float>(block.x);
+    const auto top = static_cast<float>(block.y);
+    const int columns = block.is_strip() ? block.columns : kBlockSide;
+    const int rows = block.is_strip() ? block.rows : kBlockSide;
+    return {left * spacing, top * spacing, (left + static_cast<float>(columns)) * spacing,
+            (top + static_cast<float>(rows)) * spacing};
+}
+
+}  // namespace
+
+/// A few blocks at a time, so that the hits of a block are still in the nearest cache when it is
+/// shaded and its samples go to the grid.
+void LineFinder::trace_lattice(const Tile& tile) {
+    LapTimer timer;
+    const int q = edges_.q;
+    // Cells hang on their upper left point, so the tile needs one more column and row of points.
+    grid_.x0 = tile.x0 * q;
+    grid_.y0 = tile.y0 * q;
+    grid_.spacing = 1.0F / static_cast<float>(q);
+    grid_.resize((tile.x1 - tile.x0) * q + 1, (tile.y1 - tile.y0) * q + 1);
+    std::ranges::fill(grid_.id, kBackground);
+    if (!ids_only_) grid_.surface.resize(grid_.id.size());
+
+    // The last column and row of blocks reach beyond the grid, but for strips.
+    const float beyond = static_cast<float>(lays_strips() ? 1 : kBlockSide) * grid_.spacing;
+    sampler_.enter({static_cast<float>(tile.x0), static_cast<float>(tile.y0),
+                    static_cast<float>(tile.x1) + beyond, static_cast<float>(tile.y1) + beyond});
+
+    lay_blocks();
+    hits_.resize(std::max(hits_.size(), blocks_.size()));
+    normals_.resize(hits_.size());
+    colors_.resize(hits_.size());
+    seen_.assign(blocks_.size(), 0);
+    sampler_.find_blocks(blocks_, {});
+    saw_anything_ = false;
+    const std::size_t run = takes_shades_ ? 32 : 16;  // rays take as much room as all else
+    for (std::size_t first = 0; first < blocks_.size(); first += run) {
+        const std::size_t count = std::min(run, blocks_.size() - first);
+        take(first, count);
+        timer.lap(stats_.trace_ms);
+        if (borders_ != nullptr) {
+            map_borders(first, count);
+            timer.lap(stats_.lines_ms);
+        }
+        if (tiling_ != nullptr) {
+            map_tiling(first, count);
+            timer.lap(stats_.lines_ms);
+        }
+        if (front_) shade(first, count);
+        timer.lap(stats_.shade_ms);
+    }
+    if (!specular_) return;
+    specular_->follow(grid_, {blocks_, sampler_.packets(), sampler_.points(), hits_, normals_},
+                      colors_);
+    timer.lap(stats_.shade_ms);
+}
+
+/// Whether points of one more column and row than blocks have are traced in strips.
+bool LineFinder::lays_strips() const {
+    return sampler_.rays_travel_alone() && !specular_ &&
+           !edges_.pipeline.shader.compares_neighbours();
+}
+
+void LineFinder::lay_blocks() {
+    const auto in_blocks = [&](int points) {
+        return lays_strips() && points % kBlockSide == 1 ? points - 1 : points;
+    };
+    columns_in_blocks_ = in_blocks(grid_.width);
+    rows_in_blocks_ = in_blocks(grid_.height);
+    blocks_across_ = (columns_in_blocks_ + kBlockSide - 1) / kBlockSide;
+    block_at_.clear();
+    blocks_.clear();
+    // Of points that are shaded with an eye to their neighbours, all tiles must see the same ones.
+    const bool whole = edges_.pipeline.shader.compares_neighbours();
+    for (int j = 0; j < rows_in_blocks_; j += kBlockSide) {
+        // Most rows without anything are told by one question.
+        const ScreenBox first = screen_box({grid_.x0, grid_.y0 + j}, grid_.spacing);
+        const ScreenBox last =
+            screen_box({grid_.x0 + columns_in_blocks_ - 1, grid_.y0 + j}, grid_.spacing);
+        if (!sampler_.reaches({first.left, first.top, last.right, first.bottom})) {
+            block_at_.resize(block_at_.size() + static_cast<std::size_t>(blocks_across_),
+                             kEmptyBlock);
+            continue;
+        }
+        const float side = kBlockSide * grid_.spacing;
+        std::uint64_t reached = 0;
+        for (int k = 0; k < blocks_across_; ++k, reached >>= 1U) {
+            const Block block{grid_.x0 + k * kBlockSide,
+                              grid_.y0 + j,
+                              std::min(kBlockSide, columns_in_blocks_ - k * kBlockSide),
+                              std::min(kBlockSide, rows_in_blocks_ - j),
+                              kBlockSide,
+                              whole};
+            if (k % 64 == 0) {
+                reached = sampler_.reached(screen_box(block, grid_.spacing), side,
+                                           std::min(blocks_across_ - k, 64));
+            }
+            block_at_.push_back((reached & 1U) != 0 ? static_cast<std::uint32_t>(blocks_.size())
+                                                    : kEmptyBlock);
+            if ((reached & 1U) != 0) blocks_.push_back(block);
+        }
+    }
+    strips_down_.clear();
+    strips_across_.clear();
+    for (int j = 0; columns_in_blocks_ < grid_.width && j < grid_.height; j += kLanes) {
+        strips_down_.push_back(lay_block({grid_.x0 + columns_in_blocks_, grid_.y0 + j, 1,
+                                          std::min(kLanes, grid_.height - j), 1}));
+    }
+    for (int i = 0; rows_in_blocks_ < grid_.height && i < columns_in_blocks_; i += kLanes) {
+        strips_across_.push_back(lay_block({grid_.x0 + i, grid_.y0 + rows_in_blocks_,
+                                            std::min(kLanes, columns_in_blocks_ - i), 1, kLanes}));
+    }
+}
+
+/// Its place among those that are traced.
+std::uint32_t LineFinder::lay_block(const Block& block) {
+    if (!sampler_.reaches(screen_box(block, grid_.spacing))) return kEmptyBlock;
+    blocks_.push_back(block);
+    return static_cast<std::uint32_t>(blocks_.size() - 1);
+}
+
+/// Whether nothing needs more of the lattice than where it hit, and one normal.
+bool LineFinder::can_take_shades() const {
+    const Shader& shader = edges_.pipeline.shader;
+    return shader.needs_normals_only() && !shader.has_line_normals() && !edges_.tones && !specular_;
+}
+
+/// Their hits, normals and samples.
+void LineFinder::take(std::size_t first, std::size_t count) {
+    const auto hits = std::span(hits_).subspan(first, count);
+    if (takes_shades_) {
+        sampler_.take_shades(first, true, hits, std::span(normals_).subspan(first, count));
+    } else {
+        sampler_.take_hits(first, hits);
+        for (const HitPacket& packet : hits) edges_.pipeline.shader.prefetch(packet);
+    }
+    for (std::size_t k = first; k < first + count; ++k) {
+        if (std::ranges::all_of(hits_[k].object, [](auto object) { return object == kNoObject; })) {
+            continue;  // the grid is background so far
+        }
+        saw_anything_ = true;
+        if (!takes_shades_) edges_.pipeline.shader.smooth(hits_[k], normals_[k]);
+        fill_grid(k);
+    }
+}
+
+namespace {
+
+/// Positions, normals and t of a packet.
+INKTRACE_INLINE void locate_lanes(const RayPacket& rays, const HitPacket& hits,
+                                  const NormalPacket& normals,
+                                  std::array<Lanes<float>, 7>& __restrict values) {
+    for (int i = 0; i < kLanes; ++i) {
+        const bool hit = hits.object[i] != kNoObject;
+        const float t = hit ? hits.t[i] : 0.0F;
+        values[0][i] = rays.origin_x[i] + t * rays.dir_x[i];
+        values[1][i] = rays.origin_y[i] + t * rays.dir_y[i];
+        values[2][i] = rays.origin_z[i] + t * rays.dir_z[i];
+        values[3][i] = hit ? normals.x[i] : 0.0F;
+        values[4][i] = hit ? normals.y[i] : 0.0F;
+        values[5][i] = hit ? normals.z[i] : 0.0F;
+        values[6][i] = t;
+    }
+}
+
+INKTRACE_MULTIVERSION
+void locate_hits(const RayPacket& rays, const HitPacket& hits, const NormalPacket& normals,
+                 std::array<Lanes<float>, 7>& __restrict values) {
+    locate_lanes(rays, hits, normals, values);
+}
+
+/// Where rays have not been made.
+INKTRACE_MULTIVERSION
+void locate_hits(const Camera& camera, const PointPacket& points, const HitPacket& hits,
+                 const NormalPacket& normals, std::array<Lanes<float>, 7>& __restrict values) {
+    RayPacket rays;
+    camera.make_rays(points.x, points.y, rays);
+    locate_lanes(rays, hits, normals, values);
+}
+
+}  // namespace
+
+void LineFinder::fill_grid(std::size_t block) {
+    Lanes<GeometryId> ids;
+    edges_.pipeline.ids.resolve(hits_[block], ids);
+    if (ids_only_) {
+        copy_to_grid(block, ids.data(), grid_.id.data());
+        if (edges_.balls) copy_to_grid(block, hits_[block].t.data(), grid_.t.data());
+        return;
+    }
+    std::array<Lanes<float>, 7> values;
+    const Shader& shader = edges_.pipeline.shader;
+    NormalPacket separate;
+    if (shader.has_line_normals()) shader.line_normals(hits_[block], separate);
+    const NormalPacket& normals = shader.has_line_normals() ? separate : normals_[block];
+    if (takes_shades_) {
+        locate_hits(edges_.pipeline.camera, sampler_.points()[block], hits_[block], normals,
+                    values);
+    } else {
+        locate_hits(sampler_.packets()[block], hits_[block], normals, values);
+    }
+    copy_to_grid(block, ids.data(), grid_.id.data());
+    const std::array<float*, 7> planes{grid_.px.data(), grid_.py.data(), grid_.pz.data(),
+                                       grid_.nx.data(), grid_.ny.data(), grid_.nz.data(),
+                                       grid_.t.data()};
+    for (std::size_t k = 0; k < planes.size(); ++k) {
+        copy_to_grid(block, values[k].data(), planes[k]);
+    }
+    Lanes<std::uint32_t> surfaces;
+    edges_.surfaces.number(hits_[block], surfaces);
+    copy_to_grid(block, surfaces.data(), grid_.surface.data());
+}
+
+/// Copies the values of a block to their places in a plane of the grid.
+template <class T>
+void LineFinder::copy_to_grid(std::size_t block, const T* from, T* plane) const {
+    const Block& place = blocks_[block];
+    T* to = plane + grid_.index(place.x - grid_.x0, place.y - grid_.y0);
+    if (place.columns == kBlockSide && place.rows == kBlockSide) {
+        for (int j = 0; j < kBlockSide; ++j) {
+            std::copy_n(from + j * kBlockSide, kBlockSide, to + j * grid_.width);
+        }
+        return;
+    }
+    for (int j = 0; j < place.rows; ++j) {
+        // A size known to the compiler makes each row one move.
+        if (place.columns == kBlockSide) {
+            std::copy_n(from, kBlockSide, to);
+        } else {
+            std::copy_n(from, place.columns, to);
+        }
+        from += place.across;
+        to += grid_.width;
+    }
+}
+
+void LineFinder::keep_for_ridges(const Tile& tile) {
+    const Timer timer(stats_.lines_ms);
+    const Timer phase(stats_.ridges_ms);
+    ridges_->keep(tile, {grid_, blocks_, hits_, normals_, saw_anything_});
+}
+
+void LineFinder::shade(std::size_t first, std::size_t count) {
+    const Pipeline& pipeline = edges_.pipeline;
+    for (std::size_t k = first; k < first + count; ++k) {
+        if (takes_shades_) {
+            seen_[k] = pipeline.shader.shade(hits_[k], normals_[k], colors_[k]) ? 1 : 0;
+            continue;
+        }
+        const SurfacePacket surface{sampler_.packets()[k], sampler_.points()[k], hits_[k],
+                                    normals_[k]};
+        seen_[k] = pipeline.shader.shade(surface, colors_[k]) ? 1 : 0;
+    }
+}
+
+void LineFinder::describe(std::size_t point, Sample& sample) const {
+    if (sample.id == kBackground) return;
+    const auto width = static_cast<std::size_t>(grid_.width);
+    const LatticeHit hit = hit_at(static_cast<int>(point % width), static_cast<int>(point / width));
+    edges_.surfaces.describe(*hit.hits, hit.lane, sample);
+    if (!front_) sample.ball = {};  // its outline and seams may lie on another layer
+    if (!ids_only_) return;
+    // Rarely asked for: the ray is made once more.
+    const Vec2f place =
+        grid_.point(static_cast<int>(point % width), static_cast<int>(point / width));
+    RayPacket ray;
+    edges_.pipeline.camera.make_rays(Lanes<float>::filled(place.x), Lanes<float>::filled(place.y),
+                                     ray);
+    sample.t = hit.hits->t[hit.lane];
+    sample.position = Vec3f{ray.origin_x[0], ray.origin_y[0], ray.origin_z[0]} +
+                      Vec3f{ray.dir_x[0], ray.dir_y[0], ray.dir_z[0]} * sample.t;
+    sample.normal = sample.facet;
+}
+
+/// More samples, for the bisection.
+void LineFinder::sample(std::span<const Vec2f> points, std::span<Sample> out) {
+    if (points.empty()) return;
+    sampler_.trace_points(points, point_hits_);
+    NormalPacket normals;
+    Lanes<GeometryId> ids;
+    std::array<Lanes<float>, 7> values;
+    for (std::size_t k = 0; k < point_hits_.size(); ++k) {
+        edges_.pipeline.shader.line_normals(point_hits_[k], normals);
+        edges_.pipeline.ids.resolve(point_hits_[k], ids);
+        locate_hits(sampler_.packets()[k], point_hits_[k], normals, values);
+        const std::size_t first = k * kLanes;
+        const std::size_t count = std::min<std::size_t>(kLanes, points.size() - first);
+        for (std::size_t n = 0; n < count; ++n) {
+            const int i = static_cast<int>(n);
+            Sample& sample = out[sampler_.order()[first + n]];
+            sample = {ids[i],
+                      {values[0][i], values[1][i], values[2][i]},
+                      {values[3][i], values[4][i], values[5][i]},
+                      values[6][i]};
+            edges_.surfaces.describe(point_hits_[k], i, sample);
+            if (!front_) sample.ball = {};
+        }
+    }
+}
+
+}  // namespace ink
