@@ -127,22 +127,27 @@ void add_fold(std::vector<Segment>& lines, float from, float to, float y) {
     }
 }
 
-TEST(DoubledFold, IsOneWhereItsTwoStrokesTouch) {
-    const auto plane = [](std::span<const Vec2f> points, std::span<Sample> out) {
-        std::ranges::transform(points, out.begin(), [](Vec2f p) {
-            return Sample{1, {p.x, -p.y, 0.0F}, {0, 0, 1}, 2.0F};
-        });
-    };
+/// What points of the picture see of the plane z = 0 from a height of 2, straight down.
+void sample_plane(std::span<const Vec2f> points, std::span<Sample> out) {
+    std::ranges::transform(points, out.begin(), [](Vec2f p) {
+        return Sample{1, {p.x, -p.y, 0.0F}, {0, 0, 1}, 2.0F};
+    });
+}
+Viewpoint above_plane() {
     Viewpoint viewpoint;
     viewpoint.dir = {0, 0, -1};
     viewpoint.parallel = true;
     viewpoint.origin = {{0, 0, 2}, {1, 0, 0}, {0, -1, 0}};
     viewpoint.direction = {{0, 0, -1}, {}, {}};
+    return viewpoint;
+}
+
+TEST(DoubledFold, IsOneWhereItsTwoStrokesTouch) {
     for (const float apart : {0.5F, 1.9F, 2.1F, 5.0F}) {
         std::vector<Segment> lines;
         add_fold(lines, 0.5F, 60.5F, 10.0F);
         add_fold(lines, 50.5F, 110.5F, 10.0F + apart);
-        const FoldRepairs repairs = mend_folds(lines, viewpoint, 1.0F, 2.0F, plane);
+        const FoldRepairs repairs = mend_folds(lines, above_plane(), 1.0F, 2.0F, sample_plane);
         const auto drawn_at = [&](float x) {
             std::ptrdiff_t count = 0;
             for (std::size_t k = 0; k < lines.size(); ++k) {
@@ -461,20 +466,10 @@ TEST(EndOfAFold, DoesNotTurnBack) {
 }
 
 TEST(DoubledFold, StaysWhereALineOfAnotherKindGoesOnAsIt) {
-    const auto plane = [](std::span<const Vec2f> points, std::span<Sample> out) {
-        std::ranges::transform(points, out.begin(), [](Vec2f p) {
-            return Sample{1, {p.x, -p.y, 0.0F}, {0, 0, 1}, 2.0F};
-        });
-    };
-    Viewpoint viewpoint;
-    viewpoint.dir = {0, 0, -1};
-    viewpoint.parallel = true;
-    viewpoint.origin = {{0, 0, 2}, {1, 0, 0}, {0, -1, 0}};
-    viewpoint.direction = {{0, 0, -1}, {}, {}};
     const std::vector<Segment> folds =
         fold({10.5F, 20.0F}, {70.5F, 20.0F}) + fold({20.5F, 21.5F}, {60.5F, 21.5F});
     const auto dropped = [&](const std::vector<Segment>& lines) {
-        return mend_folds(lines, viewpoint, 1.0F, 2.0F, plane).crumbs.size();
+        return mend_folds(lines, above_plane(), 1.0F, 2.0F, sample_plane).crumbs.size();
     };
     EXPECT_GT(dropped(folds), 30U);
     EXPECT_EQ(dropped(folds + straight({60.5F, 21.5F}, {70.5F, 24.0F}, LineType::boundary)), 0U);

@@ -18,35 +18,23 @@ namespace ink::HWY_NAMESPACE {
 HWY_INLINE void bound_glyphs(const Basis& basis, bool flat, const Triple& c, const Triple& x,
                              const Triple& y, const Triple& z, int i, ScreenPacket& packet) {
     const Double infinity = number(std::numeric_limits<double>::infinity());
-    Double left = infinity;
-    Double top = infinity;
-    Double right = hn::Neg(infinity);
-    Double bottom = right;
-    Double depth = infinity;
+    CornerBounds bounds = CornerBounds::none();
     Double width = infinity;  // of a pixel, at the corner where it is least
     for (int corner = 0; corner < (flat ? 4 : 8); ++corner) {
         Triple p = (corner & 1) != 0 ? sum(c, x) : difference(c, x);
         p = (corner & 2) != 0 ? sum(p, y) : difference(p, y);
         if (!flat) p = (corner & 4) != 0 ? sum(p, z) : difference(p, z);
         const Double pixel = pixel_at(basis, p.z);
-        const Double scale = hn::Div(number(1.0), pixel);
-        const Double u = hn::Mul(p.x, scale);
-        const Double v = hn::Mul(p.y, scale);
-        left = hn::Min(left, u);
-        right = hn::Max(right, u);
-        top = hn::Min(top, v);
-        bottom = hn::Max(bottom, v);
-        depth = hn::Min(depth, p.z);
+        bounds.add(p, pixel);
         width = hn::Min(width, pixel);
     }
     // A corner beside the eye has no place on the screen.
     const auto beside = hn::Le(width, number(1e-6 * basis.origin_step));
-    left = hn::IfThenElse(beside, hn::Neg(infinity), left);
-    top = hn::IfThenElse(beside, hn::Neg(infinity), top);
-    right = hn::IfThenElse(beside, infinity, right);
-    bottom = hn::IfThenElse(beside, infinity, bottom);
-    put_bounds(rounded(left), rounded(right), rounded(top), rounded(bottom), rounded(depth), i,
-               packet.bounds);
+    bounds.left = hn::IfThenElse(beside, hn::Neg(infinity), bounds.left);
+    bounds.top = hn::IfThenElse(beside, hn::Neg(infinity), bounds.top);
+    bounds.right = hn::IfThenElse(beside, infinity, bounds.right);
+    bounds.bottom = hn::IfThenElse(beside, infinity, bounds.bottom);
+    bounds.put(i, packet.bounds);
 }
 
 void lay_glyphs(Basis basis, const GlyphLanes& glyphs, ScreenPacket& packet) {

@@ -95,6 +95,31 @@ HWY_INLINE void put_bounds(Half left, Half right, Half top, Half bottom, Half de
     put(hn::Sub(depth, number_f(kDepthSlack)), bounds.depth, i);
 }
 
+/// Of corners on the screen, and the least of their depths.
+struct CornerBounds {
+    Double left, top, right, bottom, depth;
+
+    static HWY_INLINE CornerBounds none() {
+        const Double infinity = number(std::numeric_limits<double>::infinity());
+        return {infinity, infinity, hn::Neg(infinity), hn::Neg(infinity), infinity};
+    }
+    /// A corner in camera space, where a pixel is that wide.
+    HWY_INLINE void add(const Triple& corner, Double pixel) {
+        const Double scale = hn::Div(number(1.0), pixel);
+        const Double u = hn::Mul(corner.x, scale);
+        const Double v = hn::Mul(corner.y, scale);
+        left = hn::Min(left, u);
+        right = hn::Max(right, u);
+        top = hn::Min(top, v);
+        bottom = hn::Max(bottom, v);
+        depth = hn::Min(depth, corner.z);
+    }
+    HWY_INLINE void put(int i, BoundsPacket& bounds) const {
+        put_bounds(rounded(left), rounded(right), rounded(top), rounded(bottom), rounded(depth), i,
+                   bounds);
+    }
+};
+
 /// A form's numbers for all sixteen lanes, as they are computed.
 using FormLanes = std::array<Lanes<float>, std::tuple_size_v<FormNumbers>>;
 /// Likewise what hits need.

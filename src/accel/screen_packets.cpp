@@ -18,27 +18,14 @@ void prepare_boxes(Basis basis, const BoxLanes& boxes, BoundsPacket& packet) {
     for (int i = 0; i < kLanes; i += kStep) {
         const Triple lower = load(boxes.lower, i);
         const Triple upper = load(boxes.upper, i);
-        const Double infinity = number(std::numeric_limits<double>::infinity());
-        Double left = infinity;
-        Double top = infinity;
-        Double depth = infinity;
-        Double right = hn::Neg(infinity);
-        Double bottom = right;
+        CornerBounds bounds = CornerBounds::none();
         for (int corner = 0; corner < 8; ++corner) {
             const Triple p = to_camera(basis, {(corner & 1) != 0 ? upper.x : lower.x,
                                                (corner & 2) != 0 ? upper.y : lower.y,
                                                (corner & 4) != 0 ? upper.z : lower.z});
-            const Double scale = hn::Div(number(1.0), pixel_at(basis, p.z));
-            const Double u = hn::Mul(p.x, scale);
-            const Double v = hn::Mul(p.y, scale);
-            left = hn::Min(left, u);
-            right = hn::Max(right, u);
-            top = hn::Min(top, v);
-            bottom = hn::Max(bottom, v);
-            depth = hn::Min(depth, p.z);
+            bounds.add(p, pixel_at(basis, p.z));
         }
-        put_bounds(rounded(left), rounded(right), rounded(top), rounded(bottom), rounded(depth), i,
-                   packet);
+        bounds.put(i, packet);
     }
 }
 
