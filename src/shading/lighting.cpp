@@ -25,25 +25,10 @@ INKTRACE_INLINE float along(const NormalPacket& normals, int i, Vec3f d) {
     return normals.x[i] * d.x + normals.y[i] * d.y + normals.z[i] * d.z;
 }
 
-}  // namespace
-
-INKTRACE_MULTIVERSION
-void add_diffuse(const LightSource& light, const SurfacePacket& surface,
-                 const Lanes<float>& visible, ColorLanes& scattered) {
-    for (int i = 0; i < kLanes; ++i) {
-        const Vec3f to = direction_to(light, surface, i);
-        const float falls = std::max(along(surface.normals, i, to), 0.0F) * visible[i];
-        scattered.r[i] += light.color.r * falls;
-        scattered.g[i] += light.color.g * falls;
-        scattered.b[i] += light.color.b * falls;
-    }
-}
-
-INKTRACE_MULTIVERSION
-void shade_open(const LightRig& lights, const NormalPacket& normals, const ColorLanes& base,
-                ColorLanes& lit) {
-    // Copies, which the compiler knows to be apart; the arithmetic is that of add_sky, add_diffuse
-    // and multiply.
+/// What the sky and all lights give to surfaces that lie open to them; the arithmetic is that of
+/// add_sky and add_diffuse. A sum of its own, which the compiler knows to be apart from the
+/// normals.
+INKTRACE_INLINE ColorLanes open_light(const LightRig& lights, const NormalPacket& normals) {
     ColorLanes sum;
     const SkyLight sky = lights.sky;
     for (int i = 0; i < kLanes; ++i) {
@@ -62,10 +47,44 @@ void shade_open(const LightRig& lights, const NormalPacket& normals, const Color
             sum.b[i] += color.b * falls;
         }
     }
+    return sum;
+}
+
+}  // namespace
+
+INKTRACE_MULTIVERSION
+void add_diffuse(const LightSource& light, const SurfacePacket& surface,
+                 const Lanes<float>& visible, ColorLanes& scattered) {
+    for (int i = 0; i < kLanes; ++i) {
+        const Vec3f to = direction_to(light, surface, i);
+        const float falls = std::max(along(surface.normals, i, to), 0.0F) * visible[i];
+        scattered.r[i] += light.color.r * falls;
+        scattered.g[i] += light.color.g * falls;
+        scattered.b[i] += light.color.b * falls;
+    }
+}
+
+INKTRACE_MULTIVERSION
+void shade_open(const LightRig& lights, const NormalPacket& normals, const ColorLanes& base,
+                ColorLanes& lit) {
+    const ColorLanes sum = open_light(lights, normals);
     for (int i = 0; i < kLanes; ++i) {
         lit.r[i] = base.r[i] * sum.r[i];
         lit.g[i] = base.g[i] * sum.g[i];
         lit.b[i] = base.b[i] * sum.b[i];
+    }
+}
+
+INKTRACE_MULTIVERSION
+void shade_open(const LightRig& lights, const HitPacket& hits, const NormalPacket& normals,
+                Color base, const ColorPacket& background, ColorPacket& __restrict colors) {
+    const ColorLanes sum = open_light(lights, normals);
+    for (int i = 0; i < kLanes; ++i) {
+        const bool miss = hits.object[i] == kNoObject;
+        colors.r[i] = miss ? background.r[i] : base.r * sum.r[i];
+        colors.g[i] = miss ? background.g[i] : base.g * sum.g[i];
+        colors.b[i] = miss ? background.b[i] : base.b * sum.b[i];
+        colors.a[i] = miss ? background.a[i] : 1.0F;
     }
 }
 

@@ -18,6 +18,11 @@ struct ColorLanes {
     }
 };
 
+/// Linear colour, premultiplied by alpha.
+struct ColorPacket {
+    Lanes<float> r, g, b, a;
+};
+
 /// What surfaces make of light besides scattering it: fields of Material, lane by lane.
 struct Gloss {
     Lanes<float> specular, roughness, metal;
@@ -40,6 +45,11 @@ void add_diffuse(const LightSource& light, const SurfacePacket& surface,
 /// surface's colour. No light may be a disc.
 void shade_open(const LightRig& lights, const NormalPacket& normals, const ColorLanes& base,
                 ColorLanes& lit);
+
+/// The same for surfaces of one colour, straight to pixels; rays that hit nothing get the
+/// background.
+void shade_open(const LightRig& lights, const HitPacket& hits, const NormalPacket& normals,
+                Color base, const ColorPacket& background, ColorPacket& colors);
 
 /// The sky's light, as far as surfaces lie `open` to it.
 void add_sky(const SkyLight& sky, const SurfacePacket& surface, const Lanes<float>& open,

@@ -148,44 +148,6 @@ bool Shader::shade(const SurfacePacket& surface, ColorPacket& colors) const {
     return true;
 }
 
-namespace {
-
-/// What `shade_open` and `finish` do for surfaces of one colour, without lanes in between.
-INKTRACE_MULTIVERSION
-void shade_uniform(const LightRig& lights, const HitPacket& hits, const NormalPacket& normals,
-                   Color color, const ColorPacket& background, ColorPacket& __restrict colors) {
-    ColorLanes sum;
-    const SkyLight sky = lights.sky;
-    const auto along = [&](int i, Vec3f d) {
-        return normals.x[i] * d.x + normals.y[i] * d.y + normals.z[i] * d.z;
-    };
-    for (int i = 0; i < kLanes; ++i) {
-        const float up = along(i, sky.up);
-        sum.r[i] = sky.middle.r + sky.slope.r * up;
-        sum.g[i] = sky.middle.g + sky.slope.g * up;
-        sum.b[i] = sky.middle.b + sky.slope.b * up;
-    }
-    for (const LightSource& source : lights.sources) {
-        const Vec3f from = source.from;
-        const Color light = source.color;
-        for (int i = 0; i < kLanes; ++i) {
-            const float falls = std::max(along(i, from), 0.0F);
-            sum.r[i] += light.r * falls;
-            sum.g[i] += light.g * falls;
-            sum.b[i] += light.b * falls;
-        }
-    }
-    for (int i = 0; i < kLanes; ++i) {
-        const bool miss = hits.object[i] == kNoObject;
-        colors.r[i] = miss ? background.r[i] : color.r * sum.r[i];
-        colors.g[i] = miss ? background.g[i] : color.g * sum.g[i];
-        colors.b[i] = miss ? background.b[i] : color.b * sum.b[i];
-        colors.a[i] = miss ? background.a[i] : 1.0F;
-    }
-}
-
-}  // namespace
-
 bool Shader::shade(const HitPacket& hits, const NormalPacket& normals, ColorPacket& colors) const {
     const std::uint32_t object = shared_object(hits);
     if (object == kNoObject) {
@@ -194,7 +156,7 @@ bool Shader::shade(const HitPacket& hits, const NormalPacket& normals, ColorPack
     }
     if (object != kSeveralObjects && surfaces_[object].primitive_colors == nullptr &&
         pastel_ <= 0.0F) {
-        shade_uniform(lights_, hits, normals, surfaces_[object].color, background_, colors);
+        shade_open(lights_, hits, normals, surfaces_[object].color, background_, colors);
         return true;
     }
     ColorLanes base;

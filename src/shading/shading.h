@@ -42,11 +42,6 @@ struct ShadingSettings {
     NormalSource normals = NormalSource::automatic;  ///< of lines, where an object has no own
 };
 
-/// Linear colour, premultiplied by alpha.
-struct ColorPacket {
-    Lanes<float> r, g, b, a;
-};
-
 /// The mean of several packets: sum them, then scale.
 void add(const ColorPacket& colors, ColorPacket& sum);
 void scale(ColorPacket& colors, float factor);
