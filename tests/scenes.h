@@ -131,6 +131,42 @@ inline std::vector<Object> chain_of_sticks(unsigned seed, int count, float ball)
     return {sphere_object(std::move(balls)), std::move(object)};
 }
 
+inline Vec3f random_vector(std::mt19937& random) {
+    return (uniform_point(random) - Vec3f{0.5F, 0.5F, 0.5F}) * 2.0F;
+}
+
+/// Glyphs of random shape and shear, `size` long at most, each of its volume's cube root at least a
+/// tenth of that.
+inline Object random_glyphs(const UnitShape& shape, int count, double size, std::mt19937& random) {
+    Glyphs glyphs{shape, {}, {}, {}};
+    while (glyphs.placements.size() < static_cast<std::size_t>(count)) {
+        const auto scale = static_cast<float>(size * std::pow(10.0, -uniform(random)));
+        const Placement place{random_vector(random) * scale, random_vector(random) * scale,
+                              random_vector(random) * scale, random_vector(random)};
+        const float volume = dot(place.x_axis, cross(place.y_axis, place.z_axis));
+        if (std::abs(volume) < 0.05F * scale * scale * scale) continue;
+        glyphs.placements.push_back(place);
+    }
+    Object object;
+    object.kind = ObjectKind::shape;
+    object.shape = std::move(glyphs);
+    return object;
+}
+
+inline Hexahedra::Corners box_corners(Vec3f lower, Vec3f upper) {
+    const auto [x, y, z] = lower;
+    const auto [u, v, w] = upper;
+    return {
+        {{x, y, z}, {u, y, z}, {u, v, z}, {x, v, z}, {x, y, w}, {u, y, w}, {u, v, w}, {x, v, w}}};
+}
+
+inline Object hexahedron_object(std::vector<Hexahedra::Corners> corners) {
+    Object object;
+    object.kind = ObjectKind::shape;
+    object.shape = Hexahedra{std::move(corners), {}, {}};
+    return object;
+}
+
 /// The objects moved and scaled in the world: p -> p * scale + shift.
 inline std::vector<Object> placed(std::vector<Object> objects, double scale, Vec3d shift) {
     for (Object& object : objects) {
