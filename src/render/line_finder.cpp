@@ -349,42 +349,40 @@ void LineFinder::identify(std::span<const Vec2f> points, std::span<SurfaceKey> o
     }
 }
 
-/// Drops suspects where the scene rules out a line that the samples alone let suspect. What it
-/// knows of their triangles is asked for well before it is read.
+/// Drops suspects where the scene rules out a line that the samples alone let suspect.
 void LineFinder::drop_smooth() {
-    const Surfaces& surfaces = edges_.surfaces;
-    pairs_.clear();
+    const auto point_b = [&](const SuspectEdge& edge) {
+        return grid_.index(edge.i + (edge.down ? 0 : 1), edge.j + (edge.down ? 1 : 0));
+    };
+    first_numbers_.clear();
+    second_numbers_.clear();
     for (const SuspectEdge& edge : suspects_) {
         if (edge.suspicion == Suspicion::id) continue;
-        const LatticeHit a = hit_at(edge.i, edge.j);
-        const LatticeHit b = hit_at(edge.i + (edge.down ? 0 : 1), edge.j + (edge.down ? 1 : 0));
-        surfaces.prefetch(*a.hits, a.lane, *b.hits, b.lane);
-        pairs_.push_back({a, b});
+        first_numbers_.push_back(grid_.surface[grid_.index(edge.i, edge.j)]);
+        second_numbers_.push_back(grid_.surface[point_b(edge)]);
     }
-    constexpr std::size_t kAhead = 4;
-    std::size_t kept = 0;
+    smooth_edges_.resize(first_numbers_.size());
+    edges_.surfaces.find_smooth_edges(edges_.viewpoint, first_numbers_, second_numbers_,
+                                      smooth_edges_);
     std::size_t next = 0;
-    for (const SuspectEdge edge : suspects_) {
-        if (edge.suspicion != Suspicion::id) {
-            if (next + kAhead < pairs_.size()) {
-                const auto& [a, b] = pairs_[next + kAhead];
-                surfaces.prefetch_corners(*a.hits, a.lane, *b.hits, b.lane);
-            }
-            if (is_smooth(edge, pairs_[next++])) continue;
-        }
-        suspects_[kept++] = edge;
-    }
-    suspects_.resize(kept);
+    std::erase_if(suspects_, [&](const SuspectEdge& edge) {
+        if (edge.suspicion == Suspicion::id) return false;
+        const std::size_t k = next++;
+        return smooth_edges_[k] != Mesh::kNoTwin ||
+               (first_numbers_[k] >= SampleGrid::kUnknownSurface && is_smooth(edge));
+    });
 }
 
-bool LineFinder::is_smooth(const SuspectEdge& edge, const HitPair& pair) const {
-    const auto position = [&](int i, int j) -> Vec3f {
-        const std::size_t k = grid_.index(i, j);
+bool LineFinder::is_smooth(const SuspectEdge& edge) const {
+    const int i = edge.i + (edge.down ? 0 : 1);
+    const int j = edge.j + (edge.down ? 1 : 0);
+    const LatticeHit a = hit_at(edge.i, edge.j);
+    const LatticeHit b = hit_at(i, j);
+    const auto position = [&](std::size_t k) -> Vec3f {
         return {grid_.px[k], grid_.py[k], grid_.pz[k]};
     };
-    const auto& [a, b] = pair;
-    const Vec3f at_a = position(edge.i, edge.j);
-    const Vec3f at_b = position(edge.i + (edge.down ? 0 : 1), edge.j + (edge.down ? 1 : 0));
+    const Vec3f at_a = position(grid_.index(edge.i, edge.j));
+    const Vec3f at_b = position(grid_.index(i, j));
     return edges_.surfaces.smooth_between(*a.hits, a.lane, &at_a, *b.hits, b.lane, &at_b);
 }
 

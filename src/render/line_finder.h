@@ -161,10 +161,7 @@ class LineFinder {
         return {&hits_[place.block], place.lane};
     }
     void drop_smooth();
-    struct HitPair {
-        LatticeHit a, b;
-    };
-    bool is_smooth(const SuspectEdge& edge, const HitPair& pair) const;
+    bool is_smooth(const SuspectEdge& edge) const;
     void describe(std::size_t point, Sample& sample) const;
     void locate();
     void close_slits();
@@ -253,7 +250,8 @@ class LineFinder {
     std::vector<ClosedPoint> closed_;
     std::vector<HitPacket> point_hits_;
     std::vector<SuspectEdge> suspects_;
-    std::vector<HitPair> pairs_;  ///< of suspects, what their ends hit
+    /// Of suspects, what their ends hit, and the smooth edge between them.
+    std::vector<std::uint32_t> first_numbers_, second_numbers_, smooth_edges_;
     std::vector<MeshEdge> mesh_edges_;
     std::vector<std::uint32_t> others_;  ///< suspects between anything else
     std::vector<Crossing> crossings_;

@@ -8,6 +8,7 @@
 #include <variant>
 
 #include "base/multiversion.h"
+#include "sampling/shared_edges.h"
 
 namespace ink {
 
@@ -110,6 +111,16 @@ bool has_plain_primitives(const Shape& shape) {
     return std::holds_alternative<Mesh>(shape) || std::holds_alternative<Spheres>(shape);
 }
 
+/// Of edges of a mesh that are known.
+void drop_creases(const Mesh& mesh, std::span<std::uint32_t> edges) {
+    for (std::uint32_t& edge : edges) {
+        if (edge == Mesh::kNoTwin) continue;
+        const std::uint32_t triangle = edge / 3;
+        const std::uint32_t k = edge % 3;
+        if (mesh.is_crease(triangle, k) || mesh.is_boundary(triangle, k)) edge = Mesh::kNoTwin;
+    }
+}
+
 INKTRACE_MULTIVERSION
 void number_hits(const std::uint32_t* firsts, const HitPacket& hits,
                  Lanes<std::uint32_t>& numbers) {
@@ -130,6 +141,7 @@ Surfaces::Surfaces(const Scene& scene, NormalSource normals) : scene_(scene), no
         const bool plain =
             has_plain_primitives(object.shape) && past <= SampleGrid::kUnknownSurface;
         numbers_.push_back(plain ? static_cast<std::uint32_t>(next) : SampleGrid::kUnknownSurface);
+        if (plain) numbered_.push_back(meshes_.size() - 1);
         if (plain) next = past;
     }
 }
@@ -139,26 +151,6 @@ void Surfaces::number(const HitPacket& hits, Lanes<std::uint32_t>& numbers) cons
         numbers = hits.primitive;
     } else {
         number_hits(numbers_.data(), hits, numbers);
-    }
-}
-
-void Surfaces::prefetch(const HitPacket& a, int lane_a, const HitPacket& b, int lane_b) const {
-    const Mesh* mesh = meshes_[a.object[lane_a]];
-    if (mesh == nullptr || mesh->twins.empty()) return;
-    const std::size_t own = a.primitive[lane_a];
-    __builtin_prefetch(&mesh->twins[3 * own]);
-    __builtin_prefetch(&mesh->triangles[own]);
-    __builtin_prefetch(&mesh->triangles[b.primitive[lane_b]]);
-}
-
-void Surfaces::prefetch_corners(const HitPacket& a, int lane_a, const HitPacket& b,
-                                int lane_b) const {
-    const Mesh* mesh = meshes_[a.object[lane_a]];
-    if (mesh == nullptr) return;
-    for (const std::uint32_t triangle : {a.primitive[lane_a], b.primitive[lane_b]}) {
-        for (const std::uint32_t vertex : mesh->triangles[triangle]) {
-            __builtin_prefetch(&mesh->vertices[vertex]);
-        }
     }
 }
 
@@ -224,6 +216,47 @@ bool Surfaces::smooth_between(const HitPacket& a, int lane_a, const Vec3f* at_a,
     return mesh != nullptr && !facets_turn &&
            across_smooth_edge(*mesh, primitive_a, hit_normal(a, lane_a), primitive_b,
                               hit_normal(b, lane_b));
+}
+
+void Surfaces::find_smooth_edges(const Viewpoint& viewpoint, std::span<const std::uint32_t> first,
+                                 std::span<const std::uint32_t> second,
+                                 std::span<std::uint32_t> edges) const {
+    std::ranges::fill(edges, Mesh::kNoTwin);
+    const auto first_number = [&](std::size_t object) { return numbers_[object]; };
+    for (std::size_t k = 0; k < first.size();) {
+        if (first[k] >= SampleGrid::kUnknownSurface) {
+            ++k;
+            continue;
+        }
+        // Those that begin on one object go together.
+        const auto after = std::ranges::upper_bound(numbered_, first[k], {}, first_number);
+        const std::size_t object = *(after - 1);
+        const std::uint32_t base = numbers_[object];
+        const std::uint32_t past =
+            after == numbered_.end() ? SampleGrid::kUnknownSurface : numbers_[*after];
+        const auto others = first.subspan(k);
+        const auto end = std::ranges::find_if(
+            others, [&](std::uint32_t number) { return number < base || number >= past; });
+        const auto count = static_cast<std::size_t>(end - others.begin());
+        if (knows_smooth_edges(object)) {
+            const Mesh& mesh = *meshes_[object];
+            const auto found = edges.subspan(k, count);
+            find_shared_edges(mesh, viewpoint, base, others.first(count), second.subspan(k, count),
+                              found);
+            drop_creases(mesh, found);
+        }
+        k += count;
+    }
+}
+
+/// Whether normals are the same on both sides of edges that are no creases, and it is known which
+/// these are.
+bool Surfaces::knows_smooth_edges(std::size_t object) const {
+    const Mesh* mesh = meshes_[object];
+    const bool facets_turn =
+        scene_.objects()[object].normals.value_or(normals_) == NormalSource::geometric;
+    return mesh != nullptr && !facets_turn && !mesh->edge_flags.empty() &&
+           std::max(mesh->triangles.size(), mesh->vertices.size()) <= kMostShared;
 }
 
 bool Surfaces::across_smooth_edge(const Mesh& mesh, std::uint32_t a, Vec3f normal_a,

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "accel/tracer.h"
@@ -43,11 +44,6 @@ class Surfaces {
     /// Numbers for hits as SampleGrid::surface has them: one for each sphere or triangle.
     void number(const HitPacket& hits, Lanes<std::uint32_t>& numbers) const;
 
-    /// Asks for what `smooth_between` will read of the triangles that were hit: first, or when that
-    /// is there.
-    void prefetch(const HitPacket& a, int lane_a, const HitPacket& b, int lane_b) const;
-    void prefetch_corners(const HitPacket& a, int lane_a, const HitPacket& b, int lane_b) const;
-
     /// Whether no line can run between two hits that are neighbours on screen: they lie on one
     /// sphere, ellipsoid, triangle, disc, face of a box, or on the side of one frustum, or on two
     /// triangles that share an edge which is no crease, and neither of which is turned away. False
@@ -58,8 +54,14 @@ class Surfaces {
     /// The same, of hits whose positions in the scene frame are known, unless null.
     bool smooth_between(const HitPacket& a, int lane_a, const Vec3f* at_a, const HitPacket& b,
                         int lane_b, const Vec3f* at_b) const;
+    /// The same of many pairs by their numbers, of which each two differ: the edge across which two
+    /// triangles of a mesh are smooth, or Mesh::kNoTwin for all else. The spans have equal length.
+    void find_smooth_edges(const Viewpoint& viewpoint, std::span<const std::uint32_t> first,
+                           std::span<const std::uint32_t> second,
+                           std::span<std::uint32_t> edges) const;
 
   private:
+    bool knows_smooth_edges(std::size_t object) const;
     bool across_smooth_edge(const Mesh& mesh, std::uint32_t a, Vec3f normal_a, std::uint32_t b,
                             Vec3f normal_b) const;
 
@@ -68,6 +70,7 @@ class Surfaces {
     std::vector<const Spheres*> spheres_;  ///< of each object; null: other shapes
     std::vector<const Mesh*> meshes_;      ///< likewise
     std::vector<std::uint32_t> numbers_;   ///< of the first primitive of each object
+    std::vector<std::size_t> numbered_;    ///< objects whose primitives have numbers of their own
 };
 
 }  // namespace ink
