@@ -11,13 +11,13 @@
 #include <optional>
 #include <random>
 #include <set>
+#include <span>
 #include <utility>
 #include <vector>
 
 #include "lines/bridges.h"
 #include "lines/fold_joints.h"
 #include "lines/line_gaps.h"
-#include "lines/point_map.h"
 #include "lines/segment_squares.h"
 #include "lines_world.h"
 
@@ -234,7 +234,8 @@ TEST(BrokenFold, IsMendedAlikeWhateverTheOrderOfItsPiecesAndByAnyNumberOfWorkers
     const FoldLoop backwards = [](std::size_t count, const auto& body) {
         for (std::size_t k = count; k-- > 0;) body(k, k % 3);
     };
-    const FoldRepairs again = mend_folds(shuffled, viewpoint, 1.0F, 2.0F, workers, backwards);
+    const FoldRepairs again = mend_folds(shuffled, plane::SegmentSquares(shuffled), viewpoint, 1.0F,
+                                         2.0F, workers, backwards);
     ASSERT_EQ(again.bridges.size(), mended.repairs.bridges.size());
     for (std::size_t k = 0; k < again.bridges.size(); ++k) {
         EXPECT_EQ(again.bridges[k].a, mended.repairs.bridges[k].a);
@@ -263,6 +264,11 @@ std::vector<Segment> operator+(std::vector<Segment> a, const std::vector<Segment
     return a;
 }
 
+std::vector<Segment> pieces_in_gaps(const std::vector<Segment>& lines, float width = 3.0F) {
+    const plane::SegmentSquares squares(lines);
+    return close_gaps({lines, lines.size(), squares}, {}, 1.0F, width);
+}
+
 /// From (10, 10) in a direction, with a gap between two places.
 std::vector<Segment> broken_line(double angle_deg, float from, float to) {
     const Vec2f way{static_cast<float>(std::cos(angle_deg * kDegrees)),
@@ -274,7 +280,7 @@ std::vector<Segment> broken_line(double angle_deg, float from, float to) {
 TEST(GapOfALine, IsClosedByPiecesWithinCellsFromEndToEnd) {
     for (double angle = 0.0; angle < 90.0; angle += 7.0) {
         const std::vector<Segment> lines = broken_line(angle, 15.0F, 25.0F);
-        const std::vector<Segment> pieces = close_gaps(lines, {}, 1.0F, 3.0F);
+        const std::vector<Segment> pieces = pieces_in_gaps(lines);
         double total = 0.0;
         for (const Segment& piece : pieces) {
             total += std::hypot(piece.b.x - piece.a.x, piece.b.y - piece.a.y);
@@ -299,35 +305,34 @@ TEST(GapOfALine, IsClosedByPiecesWithinCellsFromEndToEnd) {
 
 TEST(GapOfALine, StaysOpenWhereSomethingLiesBetweenOrTheEndsBelongToNoOneLine) {
     const std::vector<Segment> lines = broken_line(20.0, 15.0F, 25.0F);
-    EXPECT_FALSE(close_gaps(lines, {}, 1.0F, 3.0F).empty());
+    EXPECT_FALSE(pieces_in_gaps(lines).empty());
     // Wider than four widths, and than eight pixels.
-    EXPECT_TRUE(close_gaps(lines, {}, 1.0F, 2.0F).empty());
-    EXPECT_TRUE(close_gaps(broken_line(20.0, 15.0F, 28.0F), {}, 1.0F, 3.0F).empty());
+    EXPECT_TRUE(pieces_in_gaps(lines, 2.0F).empty());
+    EXPECT_TRUE(pieces_in_gaps(broken_line(20.0, 15.0F, 28.0F)).empty());
     // A bar, on both of whose sides the line ends.
     const Vec2f end = lines[0].a + Vec2f{15.0F * 0.9397F, 15.0F * 0.3420F};
     const auto across = [&](Vec2f p) {
         return straight(p - Vec2f{-2.0F, 6.0F}, p + Vec2f{-2.0F, 6.0F}, LineType::silhouette);
     };
-    EXPECT_TRUE(close_gaps(lines + across(end + Vec2f{5.0F, 2.0F}), {}, 1.0F, 3.0F).empty());
-    EXPECT_TRUE(close_gaps(lines + across(end), {}, 1.0F, 3.0F).empty());
+    EXPECT_TRUE(pieces_in_gaps(lines + across(end + Vec2f{5.0F, 2.0F})).empty());
+    EXPECT_TRUE(pieces_in_gaps(lines + across(end)).empty());
     // Lines of two things; side by side; one that fades out.
     std::vector<Segment> other = lines;
     for (Segment& s : other) s.owner = s.a.x > 30.0F ? 2 : 1;
-    EXPECT_TRUE(close_gaps(other, {}, 1.0F, 3.0F).empty());
+    EXPECT_TRUE(pieces_in_gaps(other).empty());
     std::vector<Segment> faint = lines;
     for (Segment& s : faint) s.strength = s.a.x > 30.0F ? 0.2F : 1.0F;
-    EXPECT_TRUE(close_gaps(faint, {}, 1.0F, 3.0F).empty());
-    EXPECT_TRUE(close_gaps(straight({10.3F, 10.2F}, {25.0F, 10.2F}) +
-                               straight({30.3F, 14.2F}, {45.0F, 14.2F}),
-                           {}, 1.0F, 3.0F)
+    EXPECT_TRUE(pieces_in_gaps(faint).empty());
+    EXPECT_TRUE(pieces_in_gaps(straight({10.3F, 10.2F}, {25.0F, 10.2F}) +
+                               straight({30.3F, 14.2F}, {45.0F, 14.2F}))
                     .empty());
 }
 
 TEST(GapOfALine, IsClosedAlikeWhateverTheOrderOfTheSegments) {
     std::vector<Segment> lines = broken_line(33.0, 15.0F, 24.0F);
-    const std::vector<Segment> pieces = close_gaps(lines, {}, 1.0F, 3.0F);
+    const std::vector<Segment> pieces = pieces_in_gaps(lines);
     std::ranges::shuffle(lines, std::mt19937(1));
-    const std::vector<Segment> again = close_gaps(lines, {}, 1.0F, 3.0F);
+    const std::vector<Segment> again = pieces_in_gaps(lines);
     ASSERT_EQ(pieces.size(), again.size());
     for (std::size_t k = 0; k < pieces.size(); ++k) {
         EXPECT_TRUE(pieces[k].a == again[k].a && pieces[k].b == again[k].b);
@@ -365,9 +370,15 @@ TEST(CrumbOfAFold, LeavesNothingThatHungOnItBehind) {
 
 // Joints
 
+FoldJoints joints_of(const std::vector<Segment>& lines, std::size_t first_joining) {
+    const std::size_t first = std::min(first_joining, lines.size());
+    const plane::SegmentSquares squares(std::span<const Segment>(lines).first(first));
+    return ease_joints({lines, first, squares}, {}, 1.0F, 3.0F);
+}
+
 /// As they are drawn.
 std::vector<Segment> eased(const std::vector<Segment>& lines, std::size_t first_joining) {
-    const FoldJoints joints = ease_joints(lines, first_joining, {}, 1.0F, 3.0F);
+    const FoldJoints joints = joints_of(lines, first_joining);
     std::vector<Segment> drawn;
     for (std::size_t k = 0; k < lines.size(); ++k) {
         if (!std::ranges::binary_search(joints.dropped, k)) drawn.push_back(lines[k]);
@@ -433,7 +444,7 @@ TEST(JointOfFolds, ThatRunPastEachOtherIsOneCurve) {
 TEST(JointOfFolds, StaysACornerWhereTheLineGoesOnInAnotherDirection) {
     const std::vector<Segment> folds = fold({10.3F, 20.0F}, {40.0F, 20.0F});
     const std::vector<Segment> lines = folds + fold({40.0F, 20.0F}, {60.3F, 40.3F});
-    const FoldJoints joints = ease_joints(lines, folds.size(), {}, 1.0F, 3.0F);
+    const FoldJoints joints = joints_of(lines, folds.size());
     EXPECT_TRUE(joints.dropped.empty());
     EXPECT_TRUE(joints.curves.empty());
 }
@@ -497,38 +508,14 @@ TEST(SegmentSquares, VisitJustTheSegmentsWhoseMiddlesAreNear) {
     }
 }
 
-TEST(PointMap, PassesOverNothingThatIsNearAndMostThatIsFar) {
-    std::mt19937 random(8);
-    std::uniform_real_distribution<float> place(-20.0F, 1000.0F);
-    std::vector<Vec2f> points(20);
-    for (Vec2f& point : points) point = {place(random), place(random)};
-    const plane::PointMap map(
-        points, [](Vec2f point) { return point; }, 3.0F);
-    int passed_over = 0;
-    for (int n = 0; n < 20000; ++n) {
-        const Vec2f p = n % 2 == 0 ? Vec2f{place(random), place(random)}
-                                   : points[static_cast<std::size_t>(n) % points.size()] +
-                                         Vec2f{place(random), place(random)} * 0.004F;
-        const bool near = std::ranges::any_of(points, [&](Vec2f point) {
-            return std::abs(point.x - p.x) <= 3.0F && std::abs(point.y - p.y) <= 3.0F;
-        });
-        EXPECT_TRUE(!near || map.may_have(p));
-        passed_over += map.may_have(p) ? 0 : 1;
-    }
-    EXPECT_GT(passed_over, 9000);
-    EXPECT_FALSE(plane::PointMap(
-                     std::vector<Vec2f>{}, [](Vec2f p) { return p; }, 3.0F)
-                     .may_have({0.0F, 0.0F}));
-}
-
 TEST(JointOfFolds, IsTheSameWhateverTheOrderOfTheSegments) {
     std::vector<Segment> folds = fold({10.3F, 20.0F}, {43.0F, 20.0F}) +
                                  fold({40.0F, 22.0F}, {70.3F, 22.0F}) +
                                  fold({66.0F, 24.1F}, {90.3F, 24.1F});
-    const FoldJoints joints = ease_joints(folds, folds.size(), {}, 1.0F, 3.0F);
+    const FoldJoints joints = joints_of(folds, folds.size());
     ASSERT_FALSE(joints.curves.empty());
     std::ranges::shuffle(folds, std::mt19937(1));
-    const FoldJoints again = ease_joints(folds, folds.size(), {}, 1.0F, 3.0F);
+    const FoldJoints again = joints_of(folds, folds.size());
     EXPECT_EQ(joints.dropped.size(), again.dropped.size());
     const auto places = [](const FoldJoints& of) {
         std::set<std::array<float, 4>> found;

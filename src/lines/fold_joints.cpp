@@ -10,7 +10,6 @@
 
 #include "lines/bridges.h"
 #include "lines/end_table.h"
-#include "lines/point_map.h"
 
 namespace ink {
 
@@ -20,7 +19,6 @@ using plane::dot;
 using plane::EndTable;
 using plane::length;
 using plane::nearest_on;
-using plane::PointMap;
 using plane::unit;
 
 constexpr std::uint32_t kNone = 0xFFFFFFFFU;
@@ -31,18 +29,17 @@ float cosine(float degrees) { return std::cos(degrees * std::numbers::pi_v<float
 
 class JointEaser {
   public:
-    JointEaser(std::span<const Segment> lines, std::size_t first_joining,
-               std::span<const std::size_t> gone, float spacing, float width,
-               const JointSettings& settings)
-        : lines_(lines),
-          first_joining_(first_joining),
-          gone_(lines.size()),
+    JointEaser(const plane::PlacedLines& lines, std::span<const std::size_t> gone, float spacing,
+               float width, const JointSettings& settings)
+        : places_(lines),
+          lines_(lines.all()),
+          gone_(lines_.size()),
           spacing_(spacing),
           width_(width),
           settings_(settings) {
         for (const std::size_t k : gone) gone_[k] = 1;
-        for (std::uint32_t k = 0; k < lines.size(); ++k) {
-            if (lines[k].type == LineType::self_occlusion) folds_.push_back(k);
+        for (std::uint32_t k = 0; k < lines_.size(); ++k) {
+            if (is_fold(k)) folds_.push_back(k);
         }
     }
 
@@ -92,6 +89,8 @@ class JointEaser {
         return end % 2 == 0 ? lines_[end / 2].a : lines_[end / 2].b;
     }
 
+    bool is_fold(std::uint32_t k) const { return lines_[k].type == LineType::self_occlusion; }
+
     template <class Visit>
     void for_each_end(Visit visit) const {
         for (const std::uint32_t k : folds_) {
@@ -113,35 +112,21 @@ class JointEaser {
         std::ranges::sort(loose_, {}, [](const LooseEnd& e) {
             return std::tuple(e.point.y, e.point.x, e.way.y, e.way.x);
         });
-        find_held();
+        for (LooseEnd& loose : loose_) loose.held = is_held(loose.end);
     }
 
-    /// Which loose ends end on a line.
-    void find_held() {
-        if (loose_.empty()) return;
-        const float reach = kHeld * spacing_ + 2.0F * spacing_;  // of a segment from its end a
-        const PointMap near(
-            loose_, [](const LooseEnd& loose) { return loose.point; }, reach);
-        for (std::uint32_t k = 0; k < lines_.size(); ++k) {
-            if (near.may_have(lines_[k].a) && gone_[k] == 0) hold(k, reach);
-        }
-    }
-
-    /// Those that a line holds, not farther from its end a than `reach`.
-    void hold(std::uint32_t line, float reach) {
-        const Vec2f a = lines_[line].a;
+    /// Whether an end ends on a line that is none of its own.
+    bool is_held(std::uint32_t end) const {
         const float most = kHeld * spacing_;
-        auto at = std::ranges::lower_bound(loose_, a.y - reach, {},
-                                           [](const LooseEnd& loose) { return loose.point.y; });
-        for (; at != loose_.end() && at->point.y <= a.y + reach; ++at) {
-            if (at->held || std::abs(at->point.x - a.x) > reach ||
-                length(nearest_on(lines_[line], at->point) - at->point) > most) {
-                continue;
-            }
-            const Walk own = walk(at->end, 3.0F * spacing_);
-            at->held =
-                std::ranges::none_of(own.ends, [&](std::uint32_t end) { return end / 2 == line; });
-        }
+        const Vec2f at = point(end);
+        bool held = false;
+        const Walk own = walk(end, 3.0F * spacing_);
+        places_.near(at, 2.0F * most, [&](std::uint32_t k) {
+            held = held ||
+                   (gone_[k] == 0 && length(nearest_on(lines_[k], at) - at) <= most &&
+                    std::ranges::none_of(own.ends, [&](std::uint32_t n) { return n / 2 == k; }));
+        });
+        return held;
     }
 
     /// The end of another segment at which the line goes on; kNone if there is not just one.
@@ -222,14 +207,18 @@ class JointEaser {
     /// Where a piece that joins others turns.
     void find_joints() {
         const float sharp = cosine(settings_.least_turn);
-        for_each_end([&](std::uint32_t end) {
+        const auto first_joining = static_cast<std::uint32_t>(2 * places_.first_joining());
+        for (std::uint32_t end = first_joining; end < 2 * lines_.size(); ++end) {
+            if (!is_fold(end / 2) || gone_[end / 2] != 0) continue;
             const std::uint32_t other = next_to(end);
-            if (other == kNone || other < end) return;
-            if (std::max(end, other) / 2 < first_joining_) return;
+            if (other == kNone) continue;
+            if (other >= first_joining && other < end) continue;  // seen from there
             const float far = 1.5F * spacing_;
             const float straight = -dot(direction(end, far), direction(other, far));
-            if (straight < sharp) joints_.push_back({straight, end, other, 0.0F});
-        });
+            if (straight < sharp) {
+                joints_.push_back({straight, std::min(end, other), std::max(end, other), 0.0F});
+            }
+        }
     }
 
     /// Ends of two lines that run past each other, the nearest first.
@@ -318,8 +307,8 @@ class JointEaser {
         return unit(walked.points[walked.points.size() / 2] - walked.last());
     }
 
+    const plane::PlacedLines& places_;
     std::span<const Segment> lines_;
-    std::size_t first_joining_;
     std::vector<std::uint8_t> gone_;
     float spacing_, width_;
     const JointSettings& settings_;
@@ -332,10 +321,9 @@ class JointEaser {
 
 }  // namespace
 
-FoldJoints ease_joints(std::span<const Segment> lines, std::size_t first_joining,
-                       std::span<const std::size_t> gone, float spacing, float width,
-                       const JointSettings& settings) {
-    return JointEaser(lines, first_joining, gone, spacing, width, settings).run();
+FoldJoints ease_joints(const plane::PlacedLines& lines, std::span<const std::size_t> gone,
+                       float spacing, float width, const JointSettings& settings) {
+    return JointEaser(lines, gone, spacing, width, settings).run();
 }
 
 }  // namespace ink

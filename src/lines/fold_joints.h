@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "lines/placed_lines.h"
 #include "lines/segment.h"
 
 namespace ink {
@@ -30,11 +31,9 @@ struct FoldJoints {
 
 /// Folds of a bumpy surface that follow each other seldom lie in one line: each ends a pixel or two
 /// beside the next. Where pieces of self-occlusions were joined, such a jog becomes a curve.
-/// `lines` are all of the picture's that are seen directly, those that join others from
-/// `first_joining` on; some, by their indices, are `gone`. `width`: of a self-occlusion, pixels.
-/// The result does not depend on their order.
-FoldJoints ease_joints(std::span<const Segment> lines, std::size_t first_joining,
-                       std::span<const std::size_t> gone, float spacing, float width,
-                       const JointSettings& settings = {});
+/// `lines` are all of the picture's that are seen directly; some, by their indices, are `gone`.
+/// `width`: of a self-occlusion, pixels. The result does not depend on their order.
+FoldJoints ease_joints(const plane::PlacedLines& lines, std::span<const std::size_t> gone,
+                       float spacing, float width, const JointSettings& settings = {});
 
 }  // namespace ink

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "lines/bridges.h"
+#include "lines/fold_crumbs.h"
 #include "lines/fold_doubles.h"
 #include "lines/fold_graph.h"
 #include "lines/fold_probe.h"
@@ -17,12 +18,13 @@
 
 namespace ink {
 
+using plane::SegmentSquares;
+
 namespace {
 
 using plane::dot;
 using plane::length;
 using plane::nearest_on;
-using plane::SegmentSquares;
 using plane::unit;
 
 constexpr std::uint32_t kNone = 0xFFFFFFFFU;
@@ -36,14 +38,18 @@ struct LooseEnd {
     std::vector<Vec2f> path{};      ///< from the point on
     std::uint32_t reached = kNone;  ///< the segment that the path ends on
     bool leapt = false;             ///< reached by a leap, by one of its two ends
+
+    Vec2f last() const { return path.empty() ? point : path.back(); }
 };
 
 class FoldMender {
   public:
-    FoldMender(std::span<const Segment> lines, const Viewpoint& viewpoint, float spacing,
-               float width, std::span<const FoldWorker> workers, const FoldLoop& loop,
+    FoldMender(std::span<const Segment> lines, const SegmentSquares& squares,
+               const Viewpoint& viewpoint, float spacing, float width,
+               std::span<const FoldWorker> workers, const FoldLoop& loop,
                const FoldSettings& settings)
         : lines_(lines),
+          squares_(squares),
           spacing_(spacing),
           width_(width),
           loop_(loop),
@@ -53,7 +59,6 @@ class FoldMender {
 
     FoldRepairs run() {
         if (graph_.folds().empty()) return {};
-        squares_.emplace(lines_);
         pieces_ = graph_.roots();
         find_loose_ends();
         follow_valleys();
@@ -72,7 +77,7 @@ class FoldMender {
     std::uint32_t line_near(Vec2f point, std::uint32_t piece) const {
         float least = 0.75F * spacing_;
         std::uint32_t best = kNone;
-        squares_->near(point, 2.0F * least, [&](std::uint32_t k) {
+        squares_.near(point, 2.0F * least, [&](std::uint32_t k) {
             if (is_fold(k) && pieces_[k] == piece) return;
             const float distance = length(nearest_on(lines_[k], point) - point);
             // Two segments may share the nearest point.
@@ -97,11 +102,11 @@ class FoldMender {
             const Vec2f point = graph_.point({fold, at_b});
             const std::uint32_t near = line_near(point, pieces_[fold]);
             if (near != kNone) {
-                hangs_.push_back({fold, near, at_b});
+                endings_.hangs.push_back({fold, near, at_b});
                 tails_.push_back({fold, at_b});
                 if (goes_on_as_another(point)) whole_[pieces_[fold]] = 1;
                 const bool shared = point == lines_[near].a || point == lines_[near].b;
-                if (!shared && (!at_b || lines_[fold].spans_cell)) stubs_.push_back(fold);
+                if (!shared && (!at_b || lines_[fold].spans_cell)) endings_.stubs.push_back(fold);
                 continue;
             }
             ends_.push_back(
@@ -113,7 +118,7 @@ class FoldMender {
     /// Whether just one line of another kind ends there, too: one line, whose type changes.
     bool goes_on_as_another(Vec2f point) const {
         int count = 0;
-        squares_->near(point, spacing_, [&](std::uint32_t k) {
+        squares_.near(point, spacing_, [&](std::uint32_t k) {
             count += !is_fold(k) && (lines_[k].a == point || lines_[k].b == point) ? 1 : 0;
         });
         return count == 1;
@@ -124,9 +129,10 @@ class FoldMender {
     void pass_on() {
         constexpr std::uint32_t kOnNothing = kNone - 1;
         std::vector<std::uint32_t> lines_at(2 * lines_.size(), kNone);
-        for (const Hang& hang : hangs_) lines_at[2 * hang.fold + (hang.at_b ? 1 : 0)] = hang.line;
+        for (const FoldHang& hang : endings_.hangs)
+            lines_at[2 * hang.fold + (hang.at_b ? 1 : 0)] = hang.line;
         for (const LooseEnd& end : ends_) lines_at[2 * end.fold + (end.at_b ? 1 : 0)] = kOnNothing;
-        for (Hang& hang : hangs_) {
+        for (FoldHang& hang : endings_.hangs) {
             if (!is_fold(hang.line)) continue;
             const Vec2f from = hang.at_b ? lines_[hang.fold].b : lines_[hang.fold].a;
             FoldGraph::NearEnd near = graph_.end_near({hang.line, false}, from);
@@ -136,7 +142,7 @@ class FoldMender {
             const std::uint32_t line = lines_at[near.end];
             if (line == kNone) continue;
             if (line == kOnNothing || pieces_[line] == pieces_[hang.fold]) {
-                followers_.push_back(hang);
+                endings_.followers.push_back(hang);
             } else {
                 hang.line = line;
             }
@@ -145,16 +151,26 @@ class FoldMender {
 
     // Valleys of the angle between surface and ray
 
+    static constexpr int kStepsInArea = 8;
+
     /// End by end: a packet of rays that lie close together meets little of the scene.
     void follow_valleys() {
         loop_(ends_.size(), [&](std::size_t k, std::size_t worker) {
-            probe_.enter(ends_[k].point, 8.0F * spacing_, worker);  // seldom does it lead farther
-            while (ends_[k].open) step(ends_[k], worker);
+            for (int gone = 0; ends_[k].open; ++gone) {
+                if (gone % kStepsInArea == 0) look_ahead(ends_[k], worker);
+                step(ends_[k], worker);
+            }
         });
     }
 
+    /// Enters what the next few steps see, so that they share what is found there.
+    void look_ahead(const LooseEnd& end, std::size_t worker) const {
+        const float reach = 0.5F * kStepsInArea * spacing_;
+        probe_.enter(end.last() + end.way * reach, reach + 3.0F * spacing_, worker);
+    }
+
     void step(LooseEnd& end, std::size_t worker) const {
-        const Vec2f from = end.path.empty() ? end.point : end.path.back();
+        const Vec2f from = end.last();
         const std::optional<Vec2f> lowest =
             probe_.find_valley(from + end.way * spacing_, end.way, lines_[end.fold].owner, worker);
         end.open = lowest.has_value();
@@ -162,8 +178,7 @@ class FoldMender {
     }
 
     void go_on(LooseEnd& end, Vec2f point) const {
-        const Vec2f from = end.path.empty() ? end.point : end.path.back();
-        const Vec2f way = unit(point - from);
+        const Vec2f way = unit(point - end.last());
         if (dot(way, end.way) < 0.7F) {
             end.open = false;
             return;
@@ -243,7 +258,7 @@ class FoldMender {
             if (fold && meets_end(end)) {
                 graph_.unite(end.fold, end.reached);
             } else {
-                hangs_.push_back({end.fold, end.reached, end.at_b});
+                endings_.hangs.push_back({end.fold, end.reached, end.at_b});
             }
         }
     }
@@ -287,104 +302,21 @@ class FoldMender {
 
     // Crumbs
 
-    /// What is known of a group, at its root.
-    struct Group {
-        float length = 0.0F;
-        float depth = -1.0F;    ///< less than zero: not measured
-        bool loose = false;     ///< has an end that ends on nothing before bridges were built,
-        bool free = false;      ///< or still does
-        bool attached = false;  ///< ends on a line
-        bool stub = false;      ///< ends on one whose end it does not share
-        bool crumb = false;
-
-        friend Group operator+(const Group& a, const Group& b) {
-            return {a.length + b.length, std::max(a.depth, b.depth), a.loose || b.loose,
-                    a.free || b.free,    a.attached || b.attached,   a.stub || b.stub,
-                    a.crumb || b.crumb};
-        }
-    };
-
     void find_crumbs() {
-        std::vector<Group> groups(lines_.size());
-        for (const std::uint32_t k : graph_.folds()) {
-            groups[root(k)].length += length(lines_[k].b - lines_[k].a);
-        }
-        for (std::size_t n = 0; n < owners_.size(); ++n) {
-            const Segment& bridge = repairs_.bridges[n];
-            groups[root(owners_[n])].length += length(bridge.b - bridge.a);
-        }
         for (const LooseEnd& end : ends_) {
-            groups[root(end.fold)].loose = true;
-            if (end.reached == kNone) groups[root(end.fold)].free = true;
+            endings_.loose.push_back(end.fold);
+            if (end.reached == kNone) endings_.free.push_back(end.fold);
         }
-        for (const std::uint32_t k : stubs_) groups[root(k)].stub = true;
-        unite_followers(groups);
-        while (judge(groups)) {
-        }
-        for (const std::uint32_t k : graph_.folds()) {
-            if (groups[root(k)].crumb) repairs_.crumbs.push_back(k);
-        }
+        FoldCrumbs crumbs(lines_, graph_, probe_, loop_, width_, settings_);
+        repairs_.crumbs = crumbs.find(endings_, repairs_.bridges, owners_);
         std::size_t kept = 0;
         for (std::size_t n = 0; n < owners_.size(); ++n) {
-            if (groups[root(owners_[n])].crumb) continue;
+            if (crumbs.has(owners_[n])) continue;
             repairs_.bridges[kept] = repairs_.bridges[n];
             owners_[kept++] = owners_[n];
         }
         repairs_.bridges.resize(kept);
         owners_.resize(kept);
-    }
-
-    /// One line in two pieces, neither of which is too shallow to count.
-    void unite_followers(std::vector<Group>& groups) {
-        std::vector<std::uint8_t> asked(lines_.size());
-        for (const Hang& hang : followers_) asked[root(hang.fold)] = asked[root(hang.line)] = 1;
-        measure_depths(groups, [&](std::uint32_t group) { return asked[group] != 0; });
-        const auto counts = [&](const Group& group) {
-            return group.length * group.depth >= settings_.stub_area * width_ * width_;
-        };
-        std::vector<Hang> united;
-        std::ranges::copy_if(followers_, std::back_inserter(united), [&](const Hang& hang) {
-            return counts(groups[root(hang.fold)]) && counts(groups[root(hang.line)]);
-        });
-        for (const auto& [fold, line, at_b] : united) {
-            const std::uint32_t a = root(fold);
-            const std::uint32_t b = root(line);
-            if (a == b) continue;
-            graph_.unite(a, b);
-            groups[root(a)] = groups[a] + groups[b];
-        }
-    }
-
-    /// Finds crumbs among groups that are none so far. What hung on a crumb ends freely, so that
-    /// there may be more: false if no group became one.
-    bool judge(std::vector<Group>& groups) {
-        for (Group& group : groups) group.attached = false;
-        for (const auto& [fold, line, at_b] : hangs_) {
-            Group& group = groups[root(fold)];
-            if (root(line) == root(fold)) continue;
-            if (is_fold(line) && groups[root(line)].crumb) {
-                group.loose = group.free = true;
-            } else {
-                group.attached = true;
-            }
-        }
-        const auto is_short = [&](const Group& group) {
-            return group.loose && group.length < settings_.longest_crumb * width_;
-        };
-        measure_depths(groups, [&](std::uint32_t group) { return is_short(groups[group]); });
-        bool any = false;
-        for (const std::uint32_t k : graph_.folds()) {
-            Group& group = groups[root(k)];
-            if (group.crumb) continue;
-            const float most = group.attached ? settings_.stub_area : settings_.crumb_area;
-            const float least = group.free                  ? settings_.shortest
-                                : group.loose || group.stub ? settings_.shortest_stub
-                                                            : 0.0F;
-            group.crumb = group.length < least * width_ ||
-                          (is_short(group) && group.length * group.depth < most * width_ * width_);
-            any |= group.crumb;
-        }
-        return any;
     }
 
     void drop_doubles() {
@@ -395,47 +327,20 @@ class FoldMender {
         const auto next_of = [&](FoldEnd tail) {
             return graph_.next({tail.fold, !tail.at_b}).value_or(FoldEnd{kNone, false});
         };
-        repairs_.crumbs = FoldDoubles(lines_, *squares_, pieces_, repairs_.bridges, owners_)
+        repairs_.crumbs = FoldDoubles(lines_, squares_, pieces_, repairs_.bridges, owners_)
                               .drop(tails_, next_of, repairs_.crumbs, settings_.shadow * width_);
     }
 
-    /// The greatest depth of each group that is asked for, in pixels, unless it is known.
-    template <class Ask>
-    void measure_depths(std::vector<Group>& groups, Ask asked) {
-        std::vector<std::uint32_t> measured;
-        std::ranges::copy_if(graph_.folds(), std::back_inserter(measured), [&](std::uint32_t k) {
-            return groups[root(k)].depth < 0.0F && asked(root(k));
-        });
-        if (measured.empty()) return;
-        const std::vector<float> depths = probe_.depths_of(measured, loop_);
-        for (std::size_t n = 0; n < measured.size(); ++n) {
-            float& depth = groups[root(measured[n])].depth;
-            depth = std::max(depth, depths[n]);
-        }
-        for (const std::uint32_t k : measured) {
-            if (groups[root(k)].depth < 0.0F) groups[root(k)].depth = kBottomless;
-        }
-    }
-
-    static constexpr float kBottomless = 1e9F;  // nothing but another geometry
-
     std::span<const Segment> lines_;
+    const SegmentSquares& squares_;  ///< of the lines
     float spacing_, width_;
     const FoldLoop& loop_;
     const FoldSettings& settings_;
     FoldProbe probe_;
     FoldGraph graph_;
     std::vector<std::uint32_t> pieces_;  ///< of each line: its group before any bridge was built
-    struct Hang {
-        std::uint32_t fold, line;
-        bool at_b;
-    };
-    std::vector<Hang> hangs_;      ///< folds that end on a line
-    std::vector<Hang> followers_;  ///< those of them that go on as it does
-    std::optional<SegmentSquares> squares_;
+    FoldEndings endings_;
     std::vector<LooseEnd> ends_;
-    /// Folds that end on a cell's side, where nothing goes on, near another line.
-    std::vector<std::uint32_t> stubs_;
     std::vector<std::uint8_t> whole_;  ///< a piece: it goes on as a line of another kind
     /// Ends of folds, by their segments, that may double another one.
     std::vector<FoldEnd> tails_;
@@ -445,10 +350,11 @@ class FoldMender {
 
 }  // namespace
 
-FoldRepairs mend_folds(std::span<const Segment> lines, const Viewpoint& viewpoint, float spacing,
-                       float width, std::span<const FoldWorker> workers, const FoldLoop& loop,
+FoldRepairs mend_folds(std::span<const Segment> lines, const SegmentSquares& squares,
+                       const Viewpoint& viewpoint, float spacing, float width,
+                       std::span<const FoldWorker> workers, const FoldLoop& loop,
                        const FoldSettings& settings) {
-    return FoldMender(lines, viewpoint, spacing, width, workers, loop, settings).run();
+    return FoldMender(lines, squares, viewpoint, spacing, width, workers, loop, settings).run();
 }
 
 FoldRepairs mend_folds(std::span<const Segment> lines, const Viewpoint& viewpoint, float spacing,
@@ -457,7 +363,8 @@ FoldRepairs mend_folds(std::span<const Segment> lines, const Viewpoint& viewpoin
     const FoldLoop one_by_one = [](std::size_t count, const auto& body) {
         for (std::size_t k = 0; k < count; ++k) body(k, 0);
     };
-    return mend_folds(lines, viewpoint, spacing, width, {&worker, 1}, one_by_one, settings);
+    return mend_folds(lines, SegmentSquares(lines), viewpoint, spacing, width, {&worker, 1},
+                      one_by_one, settings);
 }
 
 }  // namespace ink

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "lines/segment.h"
+#include "lines/segment_squares.h"
 #include "sampling/samples.h"
 
 namespace ink {
@@ -64,10 +65,12 @@ using FoldLoop = std::function<void(
 /// of its folds it is merely steep. Joins such pieces of self-occlusions along the steepest way
 /// from one to the next, and finds those that are too short and shallow to mean anything, or that
 /// double another one. `lines`
-/// are all of the picture's that are seen directly; `width` is that of a self-occlusion, in pixels.
-/// The result depends neither on their order nor on how many workers there are.
-FoldRepairs mend_folds(std::span<const Segment> lines, const Viewpoint& viewpoint, float spacing,
-                       float width, std::span<const FoldWorker> workers, const FoldLoop& loop,
+/// are all of the picture's that are seen directly, `squares` their places; `width` is that of a
+/// self-occlusion, in pixels. The result depends neither on their order nor on how many workers
+/// there are.
+FoldRepairs mend_folds(std::span<const Segment> lines, const plane::SegmentSquares& squares,
+                       const Viewpoint& viewpoint, float spacing, float width,
+                       std::span<const FoldWorker> workers, const FoldLoop& loop,
                        const FoldSettings& settings = {});
 /// The same with one worker.
 FoldRepairs mend_folds(std::span<const Segment> lines, const Viewpoint& viewpoint, float spacing,

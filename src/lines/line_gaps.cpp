@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <optional>
 #include <tuple>
 #include <utility>
 
@@ -20,7 +19,6 @@ using plane::dot;
 using plane::EndTable;
 using plane::length;
 using plane::nearest_on;
-using plane::SegmentSquares;
 using plane::unit;
 
 /// An end of a segment.
@@ -35,21 +33,21 @@ float cross(Vec2f a, Vec2f b) { return a.x * b.y - a.y * b.x; }
 
 class GapCloser {
   public:
-    GapCloser(std::span<const Segment> lines, std::span<const std::size_t> gone, float spacing,
+    GapCloser(const plane::PlacedLines& lines, std::span<const std::size_t> gone, float spacing,
               float width, const GapSettings& settings)
-        : lines_(lines),
-          gone_(lines.size()),
+        : places_(lines),
+          lines_(lines.all()),
+          gone_(lines_.size()),
           spacing_(spacing),
           most_(std::max(settings.longest * width, settings.longest_cells * spacing)),
           settings_(settings),
-          table_(count_ends(lines)) {
+          table_(count_ends(lines_)) {
         for (const std::size_t k : gone) gone_[k] = 1;
     }
 
     std::vector<Segment> run() {
         find_loose();
         const std::vector<Pair> found = pairs();
-        if (!found.empty()) find_places();
         for (const auto& [apart, first, second] : found) {
             End& a = loose_[first];
             End& b = loose_[second];
@@ -137,14 +135,6 @@ class GapCloser {
                dot(a.way, way) > settings_.least_ahead && dot(b.way, way) < -settings_.least_ahead;
     }
 
-    void find_places() {
-        squares_.emplace(lines_);
-        for (const Segment& line : lines_) {
-            longest_ =
-                std::max({longest_, std::abs(line.b.x - line.a.x), std::abs(line.b.y - line.a.y)});
-        }
-    }
-
     /// Whether another line runs across the gap, or either line ends on one.
     bool is_crossed(const End& a, const End& b) const {
         const Vec2f way = unit(b.point - a.point);
@@ -175,9 +165,10 @@ class GapCloser {
                 line.a == a.point || line.b == a.point || line.a == b.point || line.b == b.point;
             return !own && (beside(line.a) || beside(line.b));
         };
-        const float near = 0.5F * (length(to - from) + longest_) + 2.0F * reach;
+        constexpr float kLongest = 1.5F;  // segment, cells
+        const float near = 0.5F * (length(to - from) + kLongest * spacing_) + 2.0F * reach;
         bool found = false;
-        squares_->near((from + to) * 0.5F, near, [&](std::uint32_t k) {
+        places_.near((from + to) * 0.5F, near, [&](std::uint32_t k) {
             found = found || (gone_[k] == 0 && crosses(lines_[k]));
         });
         return found;
@@ -208,6 +199,7 @@ class GapCloser {
         }
     }
 
+    const plane::PlacedLines& places_;
     std::span<const Segment> lines_;
     std::vector<std::uint8_t> gone_;
     float spacing_, most_;
@@ -215,14 +207,12 @@ class GapCloser {
     EndTable table_;
     std::vector<End> loose_;  ///< by place
     std::vector<bool> closed_;
-    std::optional<SegmentSquares> squares_;  ///< of all lines, where ends face each other
-    float longest_ = 0.0F;                   ///< extent of a line in x or y
     std::vector<Segment> bridges_;
 };
 
 }  // namespace
 
-std::vector<Segment> close_gaps(std::span<const Segment> lines, std::span<const std::size_t> gone,
+std::vector<Segment> close_gaps(const plane::PlacedLines& lines, std::span<const std::size_t> gone,
                                 float spacing, float width, const GapSettings& settings) {
     return GapCloser(lines, gone, spacing, width, settings).run();
 }

@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "lines/placed_lines.h"
 #include "lines/segment.h"
 
 namespace ink {
@@ -24,7 +25,7 @@ struct GapSettings {
 /// too narrow to be seen. Returns the pieces in between. `lines`: all of the picture's that are
 /// seen directly, of which some, by their indices, are `gone`; `width`: of a self-occlusion,
 /// pixels. The result does not depend on their order.
-std::vector<Segment> close_gaps(std::span<const Segment> lines, std::span<const std::size_t> gone,
+std::vector<Segment> close_gaps(const plane::PlacedLines& lines, std::span<const std::size_t> gone,
                                 float spacing, float width, const GapSettings& settings = {});
 
 }  // namespace ink

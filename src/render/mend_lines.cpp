@@ -37,12 +37,15 @@ void repair(const Edges& edges, const FoldRepairs& repairs, std::span<const Segm
 }
 
 /// Closes what gaps are left, and eases the joints.
-void join(std::vector<Segment>& lines, float spacing, float width, FoldRepairs& repairs) {
+void join(std::vector<Segment>& lines, const plane::SegmentSquares& squares, float spacing,
+          float width, FoldRepairs& repairs) {
     const std::size_t first_joining = lines.size();
     lines.insert(lines.end(), repairs.bridges.begin(), repairs.bridges.end());
-    const std::vector<Segment> pieces = close_gaps(lines, repairs.crumbs, spacing, width);
+    const std::vector<Segment> pieces =
+        close_gaps({lines, first_joining, squares}, repairs.crumbs, spacing, width);
     lines.insert(lines.end(), pieces.begin(), pieces.end());
-    const FoldJoints joints = ease_joints(lines, first_joining, repairs.crumbs, spacing, width);
+    const FoldJoints joints =
+        ease_joints({lines, first_joining, squares}, repairs.crumbs, spacing, width);
     std::vector<bool> eased(lines.size());
     for (const std::size_t k : joints.dropped) {
         eased[k] = true;
@@ -99,12 +102,13 @@ void mend(const Edges& edges, std::vector<std::unique_ptr<LineFinder>>& finders,
                                finder->enter({low.x, low.y, high.x, high.y});
                            }});
     }
+    const plane::SegmentSquares squares(lines);
     FoldRepairs repairs =
-        mend_folds(lines, edges.viewpoint, 1.0F / static_cast<float>(edges.q), width, workers,
-                   [&](std::size_t count, const auto& body) {
+        mend_folds(lines, squares, edges.viewpoint, 1.0F / static_cast<float>(edges.q), width,
+                   workers, [&](std::size_t count, const auto& body) {
                        parallel_for(count, static_cast<int>(workers.size()), body);
                    });
-    join(lines, 1.0F / static_cast<float>(edges.q), width, repairs);
+    join(lines, squares, 1.0F / static_cast<float>(edges.q), width, repairs);
     if (edges.tones) repair(edges, repairs, lines, toned);
     std::vector<bool> changed(found.size());
     // Last first, so that the places of the others stay what they are.
