@@ -45,6 +45,7 @@ struct Shaded {
     std::vector<PointPacket> points;
     std::vector<HitPacket> hits;
     std::vector<NormalPacket> normals;
+    std::vector<PlacePacket> places;
 };
 
 class View {
@@ -83,7 +84,8 @@ class View {
                      seen.points);
         seen.hits.resize(seen.points.size());
         seen.normals.resize(seen.points.size());
-        tracer->see(0, true, seen.hits, seen.normals);
+        seen.places.resize(seen.points.size());
+        tracer->see(0, seen.hits, seen.normals, seen.places);
         return seen;
     }
 
@@ -100,6 +102,7 @@ Vec3d normal_of(const NormalPacket& normals, int i) {
 Vec3d facet_of(const HitPacket& hits, int i) {
     return {hits.normal_x[i], hits.normal_y[i], hits.normal_z[i]};
 }
+Vec3d place_of(const PlacePacket& places, int i) { return {places.x[i], places.y[i], places.z[i]}; }
 double angle(Vec3d a, Vec3d b) { return std::atan2(length(cross(a, b)), dot(a, b)); }
 
 /// The ray through a point of the screen.
@@ -204,6 +207,31 @@ TEST(ShadeForms, FaceTheViewer) {
     }
 }
 
+TEST(ShadeForms, LieWhereTheRayMeetsTheTriangle) {
+    for (const ViewSettings& settings : views()) {
+        const View view({random_triangles(9, 300, 0.5F)}, settings);
+        const Shaded seen = view.shade();
+        int hits = 0;
+        for (std::size_t k = 0; k < seen.points.size(); ++k) {
+            for (int i = 0; i < kLanes; ++i) {
+                if (seen.hits[k].object[i] == kNoObject) continue;
+                ++hits;
+                const Exact exact(view.mesh(0), seen.hits[k].primitive[i]);
+                const Ray ray(view.camera().projection(), seen.points[k].x[i], seen.points[k].y[i]);
+                const Vec3d way = ray.dir / length(ray.dir);
+                const Vec3d place = place_of(seen.places[k], i);
+                const double t = seen.hits[k].t[i];
+                EXPECT_LT(length(place - (ray.origin + way * t)), 2e-6);
+                // On the triangle, whose depth is rounded the more the more it is turned away.
+                const double along = dot(exact.facet, way);
+                const double off = dot(exact.facet, place - exact.corners[0]) / along;
+                EXPECT_LT(std::abs(off), 2e-6 + 1e-7 * length(exact.facet) / std::abs(along));
+            }
+        }
+        EXPECT_GT(hits, 1000);
+    }
+}
+
 TEST(ShadeForms, OfFlatMeshesAreTheirFacets) {
     Object flat = random_triangles(5, 200, 0.5F);
     std::get<Mesh>(flat.shape).corner_normals.clear();
@@ -232,6 +260,7 @@ TEST(ShadeForms, AreTheSameBitsForRastersAndPacketsOnEveryInstructionSet) {
                 EXPECT_EQ(seen.hits[k].t[i], native.hits[k].t[i]);
                 EXPECT_EQ(facet_of(seen.hits[k], i), facet_of(native.hits[k], i));
                 EXPECT_EQ(normal_of(seen.normals[k], i), normal_of(native.normals[k], i));
+                EXPECT_EQ(place_of(seen.places[k], i), place_of(native.places[k], i));
             }
         }
     };

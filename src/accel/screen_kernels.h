@@ -70,9 +70,9 @@ bool matters(const BoundsPacket& bounds, int lane, const FrontRaster& raster);
 /// The front as hits.
 void resolve(const Front& front, const RayPacket& rays, const ScreenPacket* packets,
              HitPacket& hits);
-/// A front whose hits are all triangles, see TileTracer::see.
-void see(const Basis& basis, const Front& front, const PacketShades* shades, bool distances,
-         HitPacket& hits, NormalPacket& normals);
+/// A front whose hits are all triangles, see TileTracer::see. `places` may be null.
+void see(const Basis& basis, const Front& front, const PacketShades* shades, HitPacket& hits,
+         NormalPacket& normals, PlacePacket* places);
 /// The same without normals and barycentric coordinates, which are left as they are.
 void identify(const Front& front, const ScreenPacket* packets, HitPacket& hits);
 

@@ -76,8 +76,23 @@ HWY_INLINE Vector distance(const Basis& basis, Vector qx, Vector qy, Vector dept
     return hn::Mul(depth, hn::Sqrt(squared));
 }
 
-void see_front(const Basis& basis, const Front& front, const PacketShades* shades, bool distances,
-               HitPacket& hits, NormalPacket& normals) {
+/// Where the ray through q is at a depth.
+HWY_INLINE Vectors place(const Basis& basis, Vector qx, Vector qy, Vector depth) {
+    const auto number = [](double value) { return set(static_cast<float>(value)); };
+    const auto pixel = hn::Add(number(basis.origin_step), hn::Mul(depth, number(basis.slope_step)));
+    const auto right = hn::Mul(qx, pixel);
+    const auto down = hn::Mul(qy, pixel);
+    const auto put = [&](double start, double r, double d, double f) {
+        const auto across = hn::Add(hn::Mul(right, number(r)), hn::Mul(down, number(d)));
+        return hn::Add(hn::Add(number(start), hn::Mul(depth, number(f))), across);
+    };
+    return {put(basis.sx, basis.rx, basis.dx, basis.fx),
+            put(basis.sy, basis.ry, basis.dy, basis.fy),
+            put(basis.sz, basis.rz, basis.dz, basis.fz)};
+}
+
+void see_front(const Basis& basis, const Front& front, const PacketShades* shades, HitPacket& hits,
+               NormalPacket& normals, PlacePacket* places) {
     for (int i = 0; i < kLanes; i += kStep) {
         const auto depth = load(front.depth, i);
         const auto hit = hn::And(hn::Lt(depth, set(kInfinity)), hn::Gt(depth, set(-kInfinity)));
@@ -96,7 +111,9 @@ void see_front(const Basis& basis, const Front& front, const PacketShades* shade
         store(seen.facet, i, hits.normal_x, hits.normal_y, hits.normal_z);
         hn::Store(seen.object, kIndices, hits.object.data() + i);
         hn::Store(seen.primitive, kIndices, hits.primitive.data() + i);
-        if (!distances) continue;
+        if (places == nullptr) continue;
+        store(place(basis, qx, qy, hn::IfThenElseZero(hit, depth)), i, places->x, places->y,
+              places->z);
         const auto t = distance(basis, qx, qy, depth);
         hn::Store(hn::IfThenElse(hit, t, set(kInfinity)), kFloats, hits.t.data() + i);
     }
@@ -111,9 +128,9 @@ namespace ink {
 
 HWY_EXPORT(see_front);
 
-void see(const Basis& basis, const Front& front, const PacketShades* shades, bool distances,
-         HitPacket& hits, NormalPacket& normals) {
-    HWY_DYNAMIC_DISPATCH(see_front)(basis, front, shades, distances, hits, normals);
+void see(const Basis& basis, const Front& front, const PacketShades* shades, HitPacket& hits,
+         NormalPacket& normals, PlacePacket* places) {
+    HWY_DYNAMIC_DISPATCH(see_front)(basis, front, shades, hits, normals, places);
 }
 
 }  // namespace ink

@@ -80,11 +80,11 @@ class ScreenTileTracer final : public TileTracer {
     }
     void want_shades() override { store_.want_shades(); }
     void want_points_only() override { store_.want_points_only(); }
-    void see(std::size_t first, bool distances, std::span<HitPacket> hits,
-             std::span<NormalPacket> normals) override {
+    void see(std::size_t first, std::span<HitPacket> hits, std::span<NormalPacket> normals,
+             std::span<PlacePacket> places) override {
         for (std::size_t k = 0; k < hits.size(); ++k) {
-            ink::see(view_.basis, fronts_[first + k], store_.shades(), distances, hits[k],
-                     normals[k]);
+            ink::see(view_.basis, fronts_[first + k], store_.shades(), hits[k], normals[k],
+                     places.empty() ? nullptr : &places[k]);
         }
     }
     bool find_sides(std::size_t first, std::span<SidesPacket> sides) override {

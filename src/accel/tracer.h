@@ -9,6 +9,7 @@
 
 #include "accel/projection.h"
 #include "base/lanes.h"
+#include "base/vec3_lanes.h"
 #include "scene/scene.h"
 
 namespace ink {
@@ -39,9 +40,9 @@ struct HitPacket {
 };
 
 /// Normals that sixteen points are shaded by, unit, facing the viewer; zero where nothing was hit.
-struct NormalPacket {
-    Lanes<float> x, y, z;
-};
+using NormalPacket = Vec3Lanes;
+/// Where sixteen rays hit something, scene frame; anywhere on a miss.
+using PlacePacket = Vec3Lanes;
 
 /// One of the places where a ray crosses a surface.
 struct SurfaceHit {
@@ -132,14 +133,15 @@ class TileTracer {
     }
 
     /// After `find`, of packets `first` and on, without rays: the hits but for barycentric
-    /// coordinates, t only if `distances`, with normals that are unit and face the viewer; and the
-    /// normals to shade them by, interpolated where a mesh has normals at its corners. Only if the
-    /// frame `shades_triangles`, and after `want_shades`.
+    /// coordinates, with normals that are unit and face the viewer; the normals to shade them by,
+    /// interpolated where a mesh has normals at its corners; and where they lie, unless `places`
+    /// is empty, in which case t is left out, too. Only if the frame `shades_triangles`, and after
+    /// `want_shades`.
     virtual void want_shades() {}
     /// Takes both wishes back.
     virtual void want_points_only() {}
-    virtual void see(std::size_t /*first*/, bool /*distances*/, std::span<HitPacket> /*hits*/,
-                     std::span<NormalPacket> /*normals*/) {}
+    virtual void see(std::size_t /*first*/, std::span<HitPacket> /*hits*/,
+                     std::span<NormalPacket> /*normals*/, std::span<PlacePacket> /*places*/) {}
 
     /// Finds t, object and primitive of the hits and no more. Rays may be left out unless
     /// `needs_rays`.

@@ -1,16 +1,17 @@
 #include "lines/detect.h"
 
 #include <algorithm>
-#include <bit>
 #include <memory>
 
-#include "base/lanes.h"
+#include "lines/suspect_bits.h"
 
 // Everything between the two namespace macros is built once for each instruction set.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "lines/detect.cpp"
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
+
+#include "lines/detect_lanes-inl.h"
 
 #ifndef INK_DETECT_RUNS
 #define INK_DETECT_RUNS
@@ -33,16 +34,10 @@ struct GridPlanes {
           nz(grid.nz.data()) {}
 };
 
-/// Bit i is set for the edge that hangs on point i of sixteen.
-struct Suspects {
-    std::uint32_t id, depth, normal;
-    std::uint32_t any() const { return id | depth | normal; }
-};
-
 /// The edges of sixteen points that follow each other in the grid, row after row.
 struct SuspectRun {
     std::size_t first;
-    Suspects right, down;
+    SuspectBits right, down;
 };
 
 }  // namespace ink
@@ -51,103 +46,31 @@ struct SuspectRun {
 HWY_BEFORE_NAMESPACE();
 namespace ink::HWY_NAMESPACE {
 
-namespace hn = hwy::HWY_NAMESPACE;
-
-using Floats = hn::CappedTag<float, kLanes>;
-using Ids = hn::Rebind<GeometryId, Floats>;
-constexpr Floats kFloats;
-constexpr Ids kIds;
-constexpr auto kStep = static_cast<int>(hn::MaxLanes(Floats()));
-using Number = hn::Vec<Floats>;
-
 HWY_INLINE Number load(const float* from) { return hn::LoadU(kFloats, from); }
 
-template <class Tag, class Mask>
-HWY_INLINE std::uint32_t bits_of([[maybe_unused]] Tag tag, Mask mask) {
-#if HWY_TARGET <= HWY_AVX3
-    return static_cast<std::uint32_t>(mask.raw);
-#endif
-    std::uint8_t bytes[8] = {};
-    hn::StoreMaskBits(tag, mask, bytes);
-    return static_cast<std::uint32_t>(bytes[0]) | static_cast<std::uint32_t>(bytes[1]) << 8U;
-}
-
-/// Positions and normals of some points.
-struct Surface {
-    Number px, py, pz, nx, ny, nz;
-
-    HWY_INLINE Surface(const GridPlanes& grid, std::size_t at)
-        : px(load(grid.px + at)),
-          py(load(grid.py + at)),
-          pz(load(grid.pz + at)),
-          nx(load(grid.nx + at)),
-          ny(load(grid.ny + at)),
-          nz(load(grid.nz + at)) {}
-};
-
-/// DetectSettings as they are compared with.
-struct Thresholds {
-    Number sine_squared, least_squared;
-    Number crease;  ///< the square of the sum of two unit vectors is 2 (1 + cosine)
-
-    HWY_INLINE explicit Thresholds(const DetectSettings& settings)
-        : sine_squared(hn::Set(kFloats, settings.chord_sine * settings.chord_sine)),
-          least_squared(hn::Set(kFloats, settings.least_jump * settings.least_jump)),
-          crease(hn::Set(kFloats, 2.0F + 2.0F * settings.crease_cosine)) {}
-};
-
-/// Between hits of one geometry: which of them do not fit one smooth surface, and where normals
-/// turn.
-HWY_INLINE void compare_surfaces(const Surface& a, const Surface& b, int i,
-                                 const Thresholds& thresholds, Suspects& found) {
-    const auto dot = [](Number ax, Number ay, Number az, Number bx, Number by, Number bz) {
-        return hn::Add(hn::Add(hn::Mul(ax, bx), hn::Mul(ay, by)), hn::Mul(az, bz));
-    };
-    const Number cx = hn::Sub(b.px, a.px);
-    const Number cy = hn::Sub(b.py, a.py);
-    const Number cz = hn::Sub(b.pz, a.pz);
-    const Number mx = hn::Add(b.nx, a.nx);
-    const Number my = hn::Add(b.ny, a.ny);
-    const Number mz = hn::Add(b.nz, a.nz);
-    const Number along = dot(cx, cy, cz, mx, my, mz);
-    const Number chord_squared = dot(cx, cy, cz, cx, cy, cz);
-    const Number normal_squared = dot(mx, my, mz, mx, my, mz);
-    const Number bound =
-        hn::Mul(hn::Max(hn::Mul(thresholds.sine_squared, chord_squared), thresholds.least_squared),
-                normal_squared);
-    found.depth |= bits_of(kFloats, hn::Gt(hn::Mul(along, along), bound)) << i;
-    found.normal |= bits_of(kFloats, hn::Lt(normal_squared, thresholds.crease)) << i;
+HWY_INLINE Surface load_surface(const GridPlanes& grid, std::size_t at) {
+    return {load(grid.px + at), load(grid.py + at), load(grid.pz + at),
+            load(grid.nx + at), load(grid.ny + at), load(grid.nz + at)};
 }
 
 /// Where the IDs of sixteen edges differ; and those that hit one geometry at both ends.
-HWY_INLINE std::uint32_t compare_ids(const GeometryId* a, const GeometryId* b, std::uint32_t wanted,
-                                     Suspects& found) {
+HWY_INLINE std::uint32_t compare_id_runs(const GeometryId* a, const GeometryId* b,
+                                         std::uint32_t wanted, SuspectBits& found) {
     std::uint32_t hit = 0;
     for (int i = 0; i < kLanes; i += kStep) {
-        const auto first = hn::LoadU(kIds, a + i);
-        const auto second = hn::LoadU(kIds, b + i);
-        found.id |= bits_of(kIds, hn::Ne(first, second)) << i;
-        hit |= bits_of(kIds, hn::Ne(first, hn::Set(kIds, kBackground))) << i;
+        hit |= compare_ids(hn::LoadU(kIds, a + i), hn::LoadU(kIds, b + i), i, found);
     }
     found.id &= wanted;
     return hit & wanted & ~found.id;
 }
 
-/// Between which of sixteen pairs of hits no line runs, as they lie on one surface.
-HWY_INLINE std::uint32_t share_surface(const std::uint32_t* a, const std::uint32_t* b) {
+/// Between which of sixteen pairs of hits no line runs.
+HWY_INLINE std::uint32_t share_surfaces(const std::uint32_t* a, const std::uint32_t* b) {
     std::uint32_t shared = 0;
     for (int i = 0; i < kLanes; i += kStep) {
-        const auto first = hn::LoadU(kIds, a + i);
-        const auto second = hn::LoadU(kIds, b + i);
-        const auto known = hn::Lt(first, hn::Set(kIds, SampleGrid::kUnknownSurface));
-        shared |= bits_of(kIds, hn::And(hn::Eq(first, second), known)) << i;
+        shared |= share_surface(hn::LoadU(kIds, a + i), hn::LoadU(kIds, b + i), i);
     }
     return shared;
-}
-
-HWY_INLINE void keep(std::uint32_t hit, const DetectSettings& settings, Suspects& found) {
-    found.depth = settings.depths ? found.depth & hit : 0;
-    found.normal = settings.normals ? found.normal & hit & ~found.depth : 0;
 }
 
 /// The first `count` edges of sixteen.
@@ -170,22 +93,22 @@ std::size_t compare(const SampleGrid& grid, const DetectSettings& settings, Susp
         for (; row_end < first + kLanes; row_end += width) has_right &= ~(1U << (row_end - first));
         const std::uint32_t has_below = first < last_row ? first_bits(last_row - first) : 0;
         const std::size_t below = has_below != 0 ? first + width : first;
-        Suspects across{};
-        Suspects along{};
+        SuspectBits across{};
+        SuspectBits along{};
         const GeometryId* const id = planes.id + first;
-        std::uint32_t hit_b = compare_ids(id, id + 1, has_right, across);
-        std::uint32_t hit_c = compare_ids(id, planes.id + below, has_below, along);
+        std::uint32_t hit_b = compare_id_runs(id, id + 1, has_right, across);
+        std::uint32_t hit_c = compare_id_runs(id, planes.id + below, has_below, along);
         if (planes.surface != nullptr && (hit_b | hit_c) != 0) {
             const std::uint32_t* const surface = planes.surface + first;
-            hit_b &= ~share_surface(surface, surface + 1);
-            hit_c &= ~share_surface(surface, planes.surface + below);
+            hit_b &= ~share_surfaces(surface, surface + 1);
+            hit_c &= ~share_surfaces(surface, planes.surface + below);
         }
         if ((hit_b | hit_c) != 0 && by_surface) {
             for (int i = 0; i < kLanes; i += kStep) {
                 const auto at = static_cast<std::size_t>(i);
-                const Surface own(planes, first + at);
-                compare_surfaces(own, Surface(planes, first + at + 1), i, thresholds, across);
-                compare_surfaces(own, Surface(planes, below + at), i, thresholds, along);
+                const Surface own = load_surface(planes, first + at);
+                compare_surfaces(own, load_surface(planes, first + at + 1), i, thresholds, across);
+                compare_surfaces(own, load_surface(planes, below + at), i, thresholds, along);
             }
             keep(hit_b, settings, across);
             keep(hit_c, settings, along);
@@ -207,19 +130,6 @@ HWY_EXPORT(compare);
 
 namespace {
 
-/// Of edges that hang on points of row j, the first of which is (i, j).
-void collect(const Suspects& some, std::uint32_t those, int i, int j, bool down,
-             std::vector<SuspectEdge>& edges) {
-    for (std::uint32_t rest = some.any() & those; rest != 0; rest &= rest - 1) {
-        const std::uint32_t bit = rest & (0U - rest);
-        const Suspicion suspicion = (some.id & bit) != 0      ? Suspicion::id
-                                    : (some.depth & bit) != 0 ? Suspicion::depth
-                                                              : Suspicion::normal;
-        edges.push_back({static_cast<std::uint16_t>(i + std::countr_zero(rest)),
-                         static_cast<std::uint16_t>(j), down, suspicion});
-    }
-}
-
 void collect(const SuspectRun& run, int width, std::vector<SuspectEdge>& edges) {
     const auto first = static_cast<int>(run.first);
     int i = first % width;
@@ -227,8 +137,9 @@ void collect(const SuspectRun& run, int width, std::vector<SuspectEdge>& edges) 
     for (int begin = 0; begin < kLanes; i = 0, ++j) {
         const int end = std::min(begin + width - i, kLanes);
         const std::uint32_t those = (1U << end) - (1U << begin);
-        collect(run.right, those, i - begin, j, false, edges);
-        collect(run.down, those, i - begin, j, true, edges);
+        const auto point = [&](int bit) { return std::pair{i - begin + bit, j}; };
+        run.right.list(those, false, point, edges);
+        run.down.list(those, true, point, edges);
         begin = end;
     }
 }

@@ -170,8 +170,10 @@ void LineFinder::find_lines() {
         DetectSettings settings = edges_.detect;
         if (ids_only_) settings.depths = settings.normals = false;
         suspects_.clear();
-        if (saw_anything_) detect(grid_, settings, suspects_);
+        if (saw_anything_ && fills_grid_) detect(grid_, settings, suspects_);
+        if (saw_anything_ && !fills_grid_) detect(sample_blocks(), settings, suspects_);
         if (!ids_only_) drop_smooth();
+        if (!fills_grid_) put_ends();
     }
     {
         const Timer phase(stats_.locate_ms);
@@ -351,15 +353,18 @@ void LineFinder::identify(std::span<const Vec2f> points, std::span<SurfaceKey> o
 
 /// Drops suspects where the scene rules out a line that the samples alone let suspect.
 void LineFinder::drop_smooth() {
-    const auto point_b = [&](const SuspectEdge& edge) {
-        return grid_.index(edge.i + (edge.down ? 0 : 1), edge.j + (edge.down ? 1 : 0));
+    const auto number = [&](int i, int j) {
+        if (fills_grid_) return grid_.surface[grid_.index(i, j)];
+        const BlockPlace place = place_of(i, j);
+        return surfaces_[place.block][place.lane];
     };
     first_numbers_.clear();
     second_numbers_.clear();
     for (const SuspectEdge& edge : suspects_) {
         if (edge.suspicion == Suspicion::id) continue;
-        first_numbers_.push_back(grid_.surface[grid_.index(edge.i, edge.j)]);
-        second_numbers_.push_back(grid_.surface[point_b(edge)]);
+        first_numbers_.push_back(number(edge.i, edge.j));
+        second_numbers_.push_back(
+            number(edge.i + (edge.down ? 0 : 1), edge.j + (edge.down ? 1 : 0)));
     }
     smooth_edges_.resize(first_numbers_.size());
     edges_.surfaces.find_smooth_edges(edges_.viewpoint, first_numbers_, second_numbers_,
@@ -378,6 +383,8 @@ bool LineFinder::is_smooth(const SuspectEdge& edge) const {
     const int j = edge.j + (edge.down ? 1 : 0);
     const LatticeHit a = hit_at(edge.i, edge.j);
     const LatticeHit b = hit_at(i, j);
+    // Of meshes, no places are needed.
+    if (!fills_grid_) return edges_.surfaces.smooth_between(*a.hits, a.lane, *b.hits, b.lane);
     const auto position = [&](std::size_t k) -> Vec3f {
         return {grid_.px[k], grid_.py[k], grid_.pz[k]};
     };

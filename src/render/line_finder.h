@@ -9,7 +9,7 @@
 #include "lines/ball_locator.h"
 #include "lines/connect.h"
 #include "lines/density.h"
-#include "lines/detect.h"
+#include "lines/detect_blocks.h"
 #include "lines/locate.h"
 #include "lines/mesh_locator.h"
 #include "lines/segment.h"
@@ -124,17 +124,24 @@ class LineFinder {
         if (front && edges.pipeline.goes_on()) specular_.emplace(edges);
         if (borders_ != nullptr) sampler_.want_borders();
         takes_shades_ = front && can_take_shades() && sampler_.want_shades();
+        fills_grid_ = !takes_shades_ || ridges_ != nullptr || crosses_faces();
     }
 
     bool can_take_shades() const;
     void trace_lattice(const Tile& tile);
     void lay_blocks();
+    void make_room();
     bool lays_strips() const;
     std::uint32_t lay_block(const Block& block);
     void take(std::size_t first, std::size_t count);
     void fill_grid(std::size_t block);
     template <class T>
     void copy_to_grid(std::size_t block, const T* from, T* plane) const;
+    void name_samples(std::size_t block);
+    SampleBlocks sample_blocks();
+    std::uint32_t cut_strip(std::uint32_t strip, int first, bool down);
+    void put_ends();
+    void put_sample(int i, int j);
     void keep_for_ridges(const Tile& tile);
     void shade(std::size_t first, std::size_t count);
     void put_pixels(const Tile& tile);
@@ -223,7 +230,9 @@ class LineFinder {
     bool faces_end_;  ///< lines between faces end where another line is in front
     RidgeSearch* ridges_;
     Sampler sampler_;
-    bool takes_shades_ = false;  ///< normals to shade by come with the hits
+    bool takes_shades_ = false;  ///< normals to shade by come with the hits, and places
+    /// Whether the grid has all samples, or only the ends of suspect edges.
+    bool fills_grid_ = true;
     Sampler pixel_sampler_;
     Locator locator_;
     SampleFunction sample_;
@@ -244,6 +253,12 @@ class LineFinder {
     std::vector<SidesPacket> sides_;
     std::vector<NormalPacket> normals_;
     std::vector<ColorPacket> colors_;
+    // Where the grid is not filled, of each block, and then of strips cut into blocks:
+    std::vector<PlacePacket> places_;
+    std::vector<Lanes<GeometryId>> ids_;
+    std::vector<Lanes<std::uint32_t>> surfaces_;
+    std::size_t cut_ = 0;                         ///< strips cut into blocks, and blocks before
+    std::vector<std::uint32_t> sample_block_at_;  ///< as block_at_, with these
     std::vector<std::uint8_t> seen_;
     std::vector<const ColorPacket*> block_row_;  ///< of pixels, on their way to the film
     std::vector<ColorPacket> mixed_;             ///< those of them that differ from the lattice's

@@ -30,8 +30,8 @@ void LineFinder::trace_lattice(const Tile& tile) {
     grid_.y0 = tile.y0 * q;
     grid_.spacing = 1.0F / static_cast<float>(q);
     grid_.resize((tile.x1 - tile.x0) * q + 1, (tile.y1 - tile.y0) * q + 1);
-    std::ranges::fill(grid_.id, kBackground);
-    if (!ids_only_) grid_.surface.resize(grid_.id.size());
+    if (fills_grid_) std::ranges::fill(grid_.id, kBackground);
+    if (fills_grid_ && !ids_only_) grid_.surface.resize(grid_.id.size());
 
     // The last column and row of blocks reach beyond the grid, but for strips.
     const float beyond = static_cast<float>(lays_strips() ? 1 : kBlockSide) * grid_.spacing;
@@ -39,9 +39,7 @@ void LineFinder::trace_lattice(const Tile& tile) {
                     static_cast<float>(tile.x1) + beyond, static_cast<float>(tile.y1) + beyond});
 
     lay_blocks();
-    hits_.resize(std::max(hits_.size(), blocks_.size()));
-    normals_.resize(hits_.size());
-    colors_.resize(hits_.size());
+    make_room();
     seen_.assign(blocks_.size(), 0);
     sampler_.find_blocks(blocks_, {});
     saw_anything_ = false;
@@ -65,6 +63,18 @@ void LineFinder::trace_lattice(const Tile& tile) {
     specular_->follow(grid_, {blocks_, sampler_.packets(), sampler_.points(), hits_, normals_},
                       colors_);
     timer.lap(stats_.shade_ms);
+}
+
+void LineFinder::make_room() {
+    hits_.resize(std::max(hits_.size(), blocks_.size()));
+    colors_.resize(hits_.size());
+    // Strips are cut into so many blocks.
+    const std::size_t cut = kLanes / kBlockSide * (strips_down_.size() + strips_across_.size());
+    normals_.resize(hits_.size() + cut);
+    if (takes_shades_) places_.resize(normals_.size());
+    if (fills_grid_) return;
+    ids_.resize(normals_.size());
+    surfaces_.resize(normals_.size());
 }
 
 /// Whether points of one more column and row than blocks have are traced in strips.
@@ -141,16 +151,19 @@ bool LineFinder::can_take_shades() const {
 void LineFinder::take(std::size_t first, std::size_t count) {
     const auto hits = std::span(hits_).subspan(first, count);
     if (takes_shades_) {
-        sampler_.take_shades(first, true, hits, std::span(normals_).subspan(first, count));
+        sampler_.take_shades(first, hits, std::span(normals_).subspan(first, count),
+                             std::span(places_).subspan(first, count));
     } else {
         sampler_.take_hits(first, hits);
         for (const HitPacket& packet : hits) edges_.pipeline.shader.prefetch(packet);
     }
     for (std::size_t k = first; k < first + count; ++k) {
+        if (!fills_grid_) name_samples(k);
         if (std::ranges::all_of(hits_[k].object, [](auto object) { return object == kNoObject; })) {
             continue;  // the grid is background so far
         }
         saw_anything_ = true;
+        if (!fills_grid_) continue;
         if (!takes_shades_) edges_.pipeline.shader.smooth(hits_[k], normals_[k]);
         fill_grid(k);
     }
@@ -181,13 +194,20 @@ void locate_hits(const RayPacket& rays, const HitPacket& hits, const NormalPacke
     locate_lanes(rays, hits, normals, values);
 }
 
-/// Where rays have not been made.
+/// Where places are known.
 INKTRACE_MULTIVERSION
-void locate_hits(const Camera& camera, const PointPacket& points, const HitPacket& hits,
-                 const NormalPacket& normals, std::array<Lanes<float>, 7>& __restrict values) {
-    RayPacket rays;
-    camera.make_rays(points.x, points.y, rays);
-    locate_lanes(rays, hits, normals, values);
+void copy_hits(const PlacePacket& places, const HitPacket& hits, const NormalPacket& normals,
+               std::array<Lanes<float>, 7>& __restrict values) {
+    for (int i = 0; i < kLanes; ++i) {
+        const bool hit = hits.object[i] != kNoObject;
+        values[0][i] = places.x[i];
+        values[1][i] = places.y[i];
+        values[2][i] = places.z[i];
+        values[3][i] = normals.x[i];
+        values[4][i] = normals.y[i];
+        values[5][i] = normals.z[i];
+        values[6][i] = hit ? hits.t[i] : 0.0F;
+    }
 }
 
 }  // namespace
@@ -206,8 +226,7 @@ void LineFinder::fill_grid(std::size_t block) {
     if (shader.has_line_normals()) shader.line_normals(hits_[block], separate);
     const NormalPacket& normals = shader.has_line_normals() ? separate : normals_[block];
     if (takes_shades_) {
-        locate_hits(edges_.pipeline.camera, sampler_.points()[block], hits_[block], normals,
-                    values);
+        copy_hits(places_[block], hits_[block], normals, values);
     } else {
         locate_hits(sampler_.packets()[block], hits_[block], normals, values);
     }
@@ -244,6 +263,77 @@ void LineFinder::copy_to_grid(std::size_t block, const T* from, T* plane) const 
         from += place.across;
         to += grid_.width;
     }
+}
+
+/// IDs and surfaces of a block's samples, for where the grid is not filled.
+void LineFinder::name_samples(std::size_t block) {
+    edges_.pipeline.ids.resolve(hits_[block], ids_[block]);
+    edges_.surfaces.number(hits_[block], surfaces_[block]);
+}
+
+/// The samples as they were traced, and what strips add to them.
+SampleBlocks LineFinder::sample_blocks() {
+    const auto blocks_for = [](int points) { return (points + kBlockSide - 1) / kBlockSide; };
+    const int across = blocks_for(grid_.width);
+    const int down = blocks_for(grid_.height);
+    cut_ = blocks_.size();
+    sample_block_at_.clear();
+    for (int j = 0; j < down; ++j) {
+        for (int i = 0; i < across; ++i) {
+            const bool on_right = i >= blocks_across_;
+            if (on_right || j * kBlockSide >= rows_in_blocks_) {
+                const auto& strips = on_right ? strips_down_ : strips_across_;
+                const int first = (on_right ? j : i) * kBlockSide;
+                const std::uint32_t strip = strips[static_cast<std::size_t>(first / kLanes)];
+                sample_block_at_.push_back(cut_strip(strip, first % kLanes, on_right));
+            } else {
+                sample_block_at_.push_back(block_index(i, j));
+            }
+        }
+    }
+    static_assert(kEmptyBlock == SampleBlocks::kNothing);
+    return {grid_.width, grid_.height,     across,         down,           sample_block_at_,
+            ids_.data(), surfaces_.data(), places_.data(), normals_.data()};
+}
+
+/// Four samples of a strip, from the one in a lane on, as the first column or row of a block.
+std::uint32_t LineFinder::cut_strip(std::uint32_t strip, int first, bool down) {
+    if (strip == kEmptyBlock) return kEmptyBlock;
+    const std::size_t to = cut_++;
+    for (int n = 0; n < kBlockSide; ++n) {
+        const int from = first + n;
+        const int lane = down ? n * kBlockSide : n;
+        ids_[to][lane] = ids_[strip][from];
+        surfaces_[to][lane] = surfaces_[strip][from];
+        for (const auto axis : {&Vec3Lanes::x, &Vec3Lanes::y, &Vec3Lanes::z}) {
+            (places_[to].*axis)[lane] = (places_[strip].*axis)[from];
+            (normals_[to].*axis)[lane] = (normals_[strip].*axis)[from];
+        }
+    }
+    return static_cast<std::uint32_t>(to);
+}
+
+/// Fills the grid where edges are suspect.
+void LineFinder::put_ends() {
+    for (const SuspectEdge& edge : suspects_) {
+        put_sample(edge.i, edge.j);
+        put_sample(edge.i + (edge.down ? 0 : 1), edge.j + (edge.down ? 1 : 0));
+    }
+}
+
+void LineFinder::put_sample(int i, int j) {
+    const std::size_t n = grid_.index(i, j);
+    const auto [k, lane] = place_of(i, j);
+    grid_.id[n] = k == kEmptyBlock ? kBackground : ids_[k][lane];
+    grid_.t[n] = 0.0F;
+    if (grid_.id[n] == kBackground) return;
+    grid_.t[n] = hits_[k].t[lane];
+    grid_.px[n] = places_[k].x[lane];
+    grid_.py[n] = places_[k].y[lane];
+    grid_.pz[n] = places_[k].z[lane];
+    grid_.nx[n] = normals_[k].x[lane];
+    grid_.ny[n] = normals_[k].y[lane];
+    grid_.nz[n] = normals_[k].z[lane];
 }
 
 void LineFinder::keep_for_ridges(const Tile& tile) {

@@ -139,7 +139,7 @@ void trace_pixels(const Stencils& stencils, Workspace& work) {
         const std::size_t count = std::min(kRun, work.blocks.size() - first);
         const auto hits = std::span(work.hits).first(count);
         if (work.takes_shades) {
-            work.sampler.take_shades(first, false, hits, std::span(work.normals).first(count));
+            work.sampler.take_shades(first, hits, std::span(work.normals).first(count));
         } else {
             work.sampler.take_hits(first, hits);
         }

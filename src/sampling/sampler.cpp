@@ -165,9 +165,9 @@ void Sampler::want_points_only() {
     tracer_->want_points_only();
 }
 
-void Sampler::take_shades(std::size_t first, bool distances, std::span<HitPacket> hits,
-                          std::span<NormalPacket> normals) {
-    tracer_->see(first, distances, hits, normals);
+void Sampler::take_shades(std::size_t first, std::span<HitPacket> hits,
+                          std::span<NormalPacket> normals, std::span<PlacePacket> places) {
+    tracer_->see(first, hits, normals, places);
 }
 
 /// Room for the points of a call. What was made before is not cleared again.

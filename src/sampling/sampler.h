@@ -56,11 +56,11 @@ class Sampler {
     /// with a few blocks finds them in the nearest cache.
     void find_blocks(std::span<const Block> blocks, Vec2f offset);
     void take_hits(std::size_t first, std::span<HitPacket> hits);
-    /// Likewise without rays, with the normals to shade by: hits have no barycentric coordinates,
-    /// and t only if `distances`. From `want_shades` on, which is false if the frame cannot tell.
+    /// Likewise without rays, see TileTracer::see. From `want_shades` on, which is false if the
+    /// frame cannot tell.
     bool want_shades();
-    void take_shades(std::size_t first, bool distances, std::span<HitPacket> hits,
-                     std::span<NormalPacket> normals);
+    void take_shades(std::size_t first, std::span<HitPacket> hits, std::span<NormalPacket> normals,
+                     std::span<PlacePacket> places = {});
     /// Likewise, from `want_borders` on, how far their points are from the borders of the triangles
     /// that they hit; those of strips are left out. Only if the frame can tell.
     void want_borders();
