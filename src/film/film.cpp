@@ -10,6 +10,7 @@
 #include <hwy/highway.h>
 
 #include "base/multiversion.h"
+#include "film/opaque_ink.h"
 #include "film/srgb_bytes.h"
 
 namespace ink {
@@ -124,32 +125,6 @@ void lay_ink(const Film::BlockInk& ink, ColorPacket& colors) {
         ++channel;
     }
     lay_over(ink.alpha, ink.alpha, colors.a);
-}
-
-/// One ink on opaque pixels: what lay_ink gives, as alpha stays 1 to the last bit.
-INKTRACE_MULTIVERSION
-void lay_on_opaque(const Lanes<float>& alpha, Color color, Lanes<std::uint32_t>& bytes) {
-    constexpr float kScale = 1.0F / 255.0F;
-    for (int i = 0; i < kLanes; ++i) {
-        const std::uint32_t below = bytes[i];
-        const float ink = alpha[i];
-        const float clear = 1.0F - ink;
-        const auto mix = [&](unsigned shift, float own) {
-            const auto byte = static_cast<std::int32_t>((below >> shift) & 0xFFU);
-            const float mixed = static_cast<float>(byte) * kScale * clear + ink * own;
-            return static_cast<std::int32_t>(std::min(std::max(mixed, 0.0F), 1.0F) * 255.0F + 0.5F);
-        };
-        const auto mixed = static_cast<std::uint32_t>(mix(0, color.r) | mix(8, color.g) << 8 |
-                                                      mix(16, color.b) << 16) |
-                           0xFF000000U;
-        bytes[i] = ink != 0.0F ? mixed : below;
-    }
-}
-
-INKTRACE_INLINE bool is_opaque(const Lanes<std::uint32_t>& bytes) {
-    std::uint32_t all = 0xFF000000U;
-    for (const std::uint32_t pixel : bytes) all &= pixel;
-    return all == 0xFF000000U;
 }
 
 /// Keeps what is below where there is no ink: through colours and back it might be rounded.
@@ -453,13 +428,16 @@ void Film::put_pixel(int x, int y, const std::array<float, 4>& shaded) {
 void Film::lay_ink(int x, int y, const BlockInk& ink) {
     Block below;
     if (plain_bytes()) {
+        const bool whole = x + kBlockSide <= size_.width && y + kBlockSide <= size_.height;
+        // What lay_ink gives, as alpha stays 1 to the last bit.
+        if (whole && ink.color &&
+            lay_on_opaque(ink.alpha, *ink.color, display_row(y).data() + x,
+                          display_row(y).size())) {
+            return;
+        }
         below.display.fill(0);
         load_block(size_, x, y, display_.pixels.data(), below.display);
-        if (ink.color && is_opaque(below.display)) {
-            lay_on_opaque(ink.alpha, *ink.color, below.display);
-        } else {
-            ink::lay_ink(ink, below.display);
-        }
+        ink::lay_ink(ink, below.display);
         return copy_block(size_, x, y, below.display, display_.pixels.data());
     }
     if (plain_linear()) return lay_linear_ink(x, y, ink);

@@ -35,14 +35,23 @@ class LineDensity {
     }
     /// Lines of that length in all about a place, pixels.
     void add(Vec2f place, float length, float width) {
-        const float inked = length * width;
-        const auto column = static_cast<int>(std::floor(place.x / static_cast<float>(side_)));
-        const auto row = static_cast<int>(std::floor(place.y / static_cast<float>(side_)));
-        // Lines may end a hair outside of what was searched.
-        const int i = std::clamp(column, i0_, i0_ + across_ - 1);
-        const int j = std::clamp(row, j0_, j0_ + down_ - 1);
-        inked_[square(i, j)] += static_cast<std::int64_t>(inked * kFixedPoint);
+        add(column_of(place.x), row_of(place.y), amount(length, width));
     }
+    /// The same in steps: length times width, in 2^-20 square pixels, and the square of a place.
+    using Amount = std::int64_t;
+    static Amount amount(float length, float width) {
+        return static_cast<Amount>(length * width * kFixedPoint);
+    }
+    int column_of(float x) const {
+        // Lines may end a hair outside of what was searched.
+        const auto column = static_cast<int>(std::floor(x / static_cast<float>(side_)));
+        return std::clamp(column, i0_, i0_ + across_ - 1);
+    }
+    int row_of(float y) const {
+        const auto row = static_cast<int>(std::floor(y / static_cast<float>(side_)));
+        return std::clamp(row, j0_, j0_ + down_ - 1);
+    }
+    void add(int column, int row, Amount inked) { inked_[square(column, row)] += inked; }
     LineDensity& operator+=(const LineDensity& other);
     /// To be called after the last of them, before `at`.
     void finish();
@@ -77,10 +86,10 @@ class LineDensity {
     float area(int i, int j) const;
 
     int x0_ = 0, y0_ = 0, x1_ = 0, y1_ = 0;
-    int side_ = 1;                     ///< of a square, pixels
-    int i0_ = 0, j0_ = 0;              ///< the first square: one before the picture's
-    int across_ = 0, down_ = 0;        ///< squares
-    std::vector<std::int64_t> inked_;  ///< length times width, in 2^-20 square pixels
+    int side_ = 1;               ///< of a square, pixels
+    int i0_ = 0, j0_ = 0;        ///< the first square: one before the picture's
+    int across_ = 0, down_ = 0;  ///< squares
+    std::vector<Amount> inked_;
     std::vector<Square> squares_;
     float shrink_ = 1.0F;  ///< from the places of `at`
     Vec2f shift_;          ///< likewise, after shrinking

@@ -193,11 +193,11 @@ void InkTile::draw_faces(int x, int y, const Lanes<float>& distance, const Lanes
 }
 
 void InkTile::draw_borders(int x, int y, const Lanes<std::uint32_t>& codes, float reach,
-                           const Lanes<float>* depths, std::size_t style, float width) {
+                           const Lanes<float>& depths, std::size_t style, float width) {
     Layer& layer = layer_of(style);
     const std::size_t k = index(x, y) / kLanes;
-    Lanes<float>* const t = layer.t.empty() ? nullptr : &layer.t[k];
-    if (ink::draw_borders(codes, reach, 0.5F * width, depths, kMeshBehind, layer.coverage[k], t) &&
+    if (ink::draw_borders(codes, reach, 0.5F * width, depths, kMeshBehind, layer.coverage[k],
+                          layer.t[k]) &&
         touched_[k] == 0) {
         touched_[k] = kTouched;
     }

@@ -84,10 +84,10 @@ class InkTile {
     void draw_faces(int x, int y, const Lanes<float>& distance, const Lanes<float>& nx,
                     const Lanes<float>& ny, const Lanes<float>& t, const Lanes<float>& strength,
                     std::size_t style, float width);
-    /// The same where each pixel sees a face that is one triangle: `codes` are BorderCodes of
-    /// distances up to `reach`, `depths` those of the pixels; null if nothing asks for them.
+    /// The same where each pixel sees a face that is one triangle, and there are several inks:
+    /// `codes` are BorderCodes of distances up to `reach`, `depths` those of the pixels.
     void draw_borders(int x, int y, const Lanes<std::uint32_t>& codes, float reach,
-                      const Lanes<float>* depths, std::size_t style, float width);
+                      const Lanes<float>& depths, std::size_t style, float width);
     /// Lays the inks over each other, the nearer line on top at each pixel.
     void finish();
 

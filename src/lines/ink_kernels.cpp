@@ -351,34 +351,67 @@ void finish_soft_blocks(const InkPlanes& planes, std::size_t blocks,
 /// More than half a diagonal of a pixel: farther from a band no pixel gets ink.
 constexpr float kBeyondBand = 0.75F;
 
-bool draw_border_lanes(const Lanes<std::uint32_t>& codes, float reach, float half,
-                       const Lanes<float>* depths, float behind, Lanes<float>& coverage,
-                       Lanes<float>* nearest) {
-    const hn::RebindToUnsigned<Floats> numbers;
-    bool any = false;
-    for (int i = 0; i < kLanes; i += kStep) {
-        const auto code = hn::Load(numbers, codes.data() + i);
-        const auto part = [&](auto bits) HWY_ATTR {
-            return hn::ConvertTo(kFloats, hn::BitCast(kIntegers, bits));
-        };
-        const Number distance =
-            hn::Mul(part(hn::ShiftRight<16>(code)), set(reach / BorderCode::kSteps));
-        if (hn::AllTrue(kFloats, hn::Ge(distance, set(half + kBeyondBand)))) continue;
-        any = true;
-        const Number narrow = hn::Mul(part(hn::And(code, hn::Set(numbers, 0xFFFFU))),
+/// Borders that some pixels of a block see, from the i-th on.
+class BorderLanes {
+  public:
+    HWY_INLINE BorderLanes(const Lanes<std::uint32_t>& codes, float reach, int i)
+        : code_(hn::Load(kNumbers, codes.data() + i)),
+          distance_(hn::Mul(number(hn::ShiftRight<16>(code_)), set(reach / BorderCode::kSteps))) {}
+
+    /// Whether none gets ink from a band of that half width.
+    HWY_INLINE bool beyond(float half) const {
+        return hn::AllTrue(kFloats, hn::Ge(distance_, set(half + kBeyondBand)));
+    }
+    HWY_INLINE Number ink(float half) const {
+        const Number narrow = hn::Mul(number(hn::And(code_, hn::Set(kNumbers, 0xFFFFU))),
                                       set(BorderCode::kMostNarrow / BorderCode::kSteps));
         const Number wide = hn::Sqrt(hn::Sub(set(1.0F), hn::Mul(narrow, narrow)));
         const SquareCoverage area(wide, narrow);
-        const Number ink =
-            hn::Sub(area(hn::Sub(set(half), distance)), area(hn::Sub(set(-half), distance)));
-        float* most = coverage.data() + i;
+        return hn::Sub(area(hn::Sub(set(half), distance_)), area(hn::Sub(set(-half), distance_)));
+    }
+
+  private:
+    static constexpr hn::RebindToUnsigned<Floats> kNumbers{};
+
+    HWY_INLINE Number number(hn::Vec<hn::RebindToUnsigned<Floats>> bits) const {
+        return hn::ConvertTo(kFloats, hn::BitCast(kIntegers, bits));
+    }
+
+    hn::Vec<hn::RebindToUnsigned<Floats>> code_;
+    Number distance_;
+};
+
+bool draw_border_lanes(const Lanes<std::uint32_t>& codes, float reach, float half,
+                       const Lanes<float>& depths, float behind, Lanes<float>& coverage,
+                       Lanes<float>& nearest) {
+    bool any = false;
+    for (int i = 0; i < kLanes; i += kStep) {
+        const BorderLanes borders(codes, reach, i);
+        if (borders.beyond(half)) continue;
+        any = true;
+        const Number ink = borders.ink(half);
+        float* const most = coverage.data() + i;
         hn::Store(hn::Max(hn::Load(kFloats, most), ink), kFloats, most);
-        if (nearest == nullptr) continue;
-        float* const t = nearest->data() + i;
+        float* const t = nearest.data() + i;
         const auto inked = hn::Gt(ink, hn::Zero(kFloats));
-        const Number own = hn::Add(load(*depths, i), set(behind));
+        const Number own = hn::Add(load(depths, i), set(behind));
         hn::Store(hn::Min(hn::Load(kFloats, t), hn::IfThenElse(inked, own, set(kInfinity))),
                   kFloats, t);
+    }
+    return any;
+}
+
+bool ink_border_lanes(const Lanes<std::uint32_t>& codes, float reach, float half, float opacity,
+                      const Lanes<float>& others, Lanes<float>& alpha) {
+    bool any = false;
+    for (int i = 0; i < kLanes; i += kStep) {
+        const BorderLanes borders(codes, reach, i);
+        const Number other = load(others, i);
+        const bool beyond = borders.beyond(half);
+        any = any || !beyond;
+        const Number all =
+            beyond ? other : hn::Max(hn::Mul(borders.ink(half), set(opacity)), other);
+        hn::Store(all, kFloats, alpha.data() + i);
     }
     return any;
 }
@@ -391,6 +424,7 @@ HWY_AFTER_NAMESPACE();
 namespace ink {
 
 HWY_EXPORT(draw_border_lanes);
+HWY_EXPORT(ink_border_lanes);
 HWY_EXPORT(draw_solid_batch);
 HWY_EXPORT(draw_soft_batch);
 HWY_EXPORT(finish_soft_blocks);
@@ -398,10 +432,15 @@ HWY_EXPORT(finish_soft_blocks);
 void draw_solid(const InkBatch& batch) { HWY_DYNAMIC_DISPATCH(draw_solid_batch)(batch); }
 
 bool draw_borders(const Lanes<std::uint32_t>& codes, float reach, float half,
-                  const Lanes<float>* depths, float behind, Lanes<float>& coverage,
-                  Lanes<float>* nearest) {
+                  const Lanes<float>& depths, float behind, Lanes<float>& coverage,
+                  Lanes<float>& nearest) {
     return HWY_DYNAMIC_DISPATCH(draw_border_lanes)(codes, reach, half, depths, behind, coverage,
                                                    nearest);
+}
+
+bool ink_borders(const Lanes<std::uint32_t>& codes, float reach, float half, float opacity,
+                 const Lanes<float>& others, Lanes<float>& alpha) {
+    return HWY_DYNAMIC_DISPATCH(ink_border_lanes)(codes, reach, half, opacity, others, alpha);
 }
 
 void draw_soft(const InkBatch& batch, std::span<const float> profile) {

@@ -50,10 +50,14 @@ void draw_solid(const InkBatch& batch);
 
 /// Inks 4 x 4 pixels with the bands along the borders of what they see, each by its area under the
 /// nearest one. `codes` are BorderCodes of distances up to `reach`. Where there is ink, `nearest`
-/// becomes at most `depths` plus `behind`; both null: not wanted. False if there is none.
+/// becomes at most `depths` plus `behind`. False if there is none.
 bool draw_borders(const Lanes<std::uint32_t>& codes, float reach, float half,
-                  const Lanes<float>* depths, float behind, Lanes<float>& coverage,
-                  Lanes<float>* nearest);
+                  const Lanes<float>& depths, float behind, Lanes<float>& coverage,
+                  Lanes<float>& nearest);
+/// The same where all lines have one ink: `alpha` is that of the bands, or of the other lines where
+/// theirs is greater. False if it is only theirs.
+bool ink_borders(const Lanes<std::uint32_t>& codes, float reach, float half, float opacity,
+                 const Lanes<float>& others, Lanes<float>& alpha);
 
 /// Inks each pixel by the distance of its centre from the line: `profile` holds strengths at equal
 /// steps of distance from 0 to half the width, between which they are straight, and one 0 more.

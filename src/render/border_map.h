@@ -25,10 +25,10 @@ class BorderMap {
     bool sees(int x, int y) const { return seen_[block(x, y)] != 0; }
     /// What they see, each as a BorderCode; only if any is.
     const Lanes<std::uint32_t>& codes(int x, int y) const { return codes_[block(x, y)]; }
-    /// Along their rays; null if they are not kept.
-    const Lanes<float>* depths(int x, int y) const {
-        return depths_.empty() ? nullptr : &depths_[block(x, y)];
-    }
+    /// Along their rays; only if they are kept.
+    const Lanes<float>& depths(int x, int y) const { return depths_[block(x, y)]; }
+    /// Says that a block will be asked for soon.
+    void prefetch(int x, int y) const { __builtin_prefetch(&codes_[block(x, y)]); }
     float reach() const { return reach_; }
 
   private:

@@ -34,10 +34,14 @@ void LineDrawer::draw(const Tile& tile, const std::vector<TileLines>& found) {
             ink_faces(tile, *face_edges_);
         }
         if (tiling_ != nullptr) ink_faces(tile, *tiling_);
-        if (borders_ != nullptr) ink_borders(tile);
+        if (borders_ != nullptr && edges_.ink.has_several_inks()) ink_borders(tile);
         ink_.finish();
     }
-    write(tile);
+    if (borders_ != nullptr && !edges_.ink.has_several_inks()) {
+        write_with_borders(tile);
+    } else {
+        write(tile);
+    }
 }
 
 float LineDrawer::width_scale(const InkStroke& stroke) const {
@@ -149,7 +153,8 @@ void LineDrawer::ink_faces(const Tile& tile, Faces& faces) {
                         });
 }
 
-void LineDrawer::ink_borders(const Tile& tile) {
+/// Finds the blocks of the tile that see borders, and how wide lines are there.
+void LineDrawer::gather_borders(const Tile& tile) {
     middles_.clear();
     for (int y = tile.y0; y < tile.y1; y += kBlockSide) {
         for (int x = tile.x0; x < tile.x1; x += kBlockSide) {
@@ -160,6 +165,10 @@ void LineDrawer::ink_borders(const Tile& tile) {
     }
     scales_.resize(middles_.size());
     thinning_.scales_at(middles_, scales_);
+}
+
+void LineDrawer::ink_borders(const Tile& tile) {
+    gather_borders(tile);
     const std::size_t style = edges_.style_of(LineType::mesh, 0);
     const float width = edges_.ink.styles[style].width_px;
     for (std::size_t k = 0; k < middles_.size(); ++k) {
@@ -284,9 +293,53 @@ void LineDrawer::write(const Tile& tile) {
         for (std::size_t c = 0; c < 3 && !ink.color; ++c) {
             ink.colors[c] = ink_.color()[c].data() + k * kLanes;
         }
-        edges_.pipeline.film.lay_ink(x, y, ink);
-        if (edges_.pipeline.aovs) edges_.pipeline.aovs->put_strength(Block{x, y}, ink.alpha);
+        lay(x, y, ink);
     }
+}
+
+/// Where all lines have one ink, that of lines between faces needs no layer to be gathered in: it
+/// goes from what is kept of a block's borders straight to its pixels.
+void LineDrawer::write_with_borders(const Tile& tile) {
+    const Timer phase(stats_.blend_ms);
+    gather_borders(tile);
+    const LineStyle& style = edges_.ink.styles[edges_.style_of(LineType::mesh, 0)];
+    const Lanes<float> no_ink{};
+    std::size_t seen = 0;
+    std::size_t k = 0;
+    for (int y = tile.y0; y < tile.y1; y += kBlockSide) {
+        prefetch_row(tile, y + kBlockSide);
+        for (int x = tile.x0; x < tile.x1; x += kBlockSide, ++k) {
+            const bool stroked = ink_.touched(k);
+            const Lanes<float>& strokes = stroked ? ink_.alpha_of_block(k) : no_ink;
+            Lanes<float> alpha;
+            if (borders_->sees(x, y) && ink::ink_borders(borders_->codes(x, y), borders_->reach(),
+                                                         0.5F * (style.width_px * scales_[seen++]),
+                                                         style.opacity, strokes, alpha)) {
+                lay(x, y, {alpha, style.color, {}});
+            } else if (stroked) {
+                lay(x, y, {strokes, style.color, {}});
+            }
+        }
+    }
+}
+
+/// Says that a row of blocks of the tile will be written soon.
+void LineDrawer::prefetch_row(const Tile& tile, int y) const {
+    constexpr int kPixels = 64 / sizeof(std::uint32_t);  // to a cache line
+    if (y >= tile.y1) return;
+    for (int x = tile.x0; x < tile.x1; x += kBlockSide) borders_->prefetch(x, y);
+    Film& film = edges_.pipeline.film;
+    if (film.display().pixels.empty()) return;
+    for (int row = y; row < std::min(y + kBlockSide, tile.y1); ++row) {
+        for (int x = tile.x0; x < tile.x1; x += kPixels) {
+            __builtin_prefetch(film.display_row(row).data() + x);
+        }
+    }
+}
+
+void LineDrawer::lay(int x, int y, const Film::BlockInk& ink) {
+    edges_.pipeline.film.lay_ink(x, y, ink);
+    if (edges_.pipeline.aovs) edges_.pipeline.aovs->put_strength(Block{x, y}, ink.alpha);
 }
 
 }  // namespace ink

@@ -39,6 +39,9 @@ class LineDrawer {
     void for_each_near_tile(const Tile& tile, const std::vector<TileLines>& found, Visit visit);
     void gather(const Tile& tile, const std::vector<TileLines>& found);
     void write(const Tile& tile);
+    void write_with_borders(const Tile& tile);
+    void prefetch_row(const Tile& tile, int y) const;
+    void lay(int x, int y, const Film::BlockInk& ink);
 
     void leave_gap(const InkStroke& stroke);
     float width_scale(const InkStroke& stroke) const;
@@ -50,6 +53,7 @@ class LineDrawer {
     std::uint32_t object_of(std::uint32_t triangle) const {
         return faces_ != nullptr ? faces_->triangle(triangle).object : triangle;
     }
+    void gather_borders(const Tile& tile);
     void ink_borders(const Tile& tile);
     void write_planes(const Tile& tile, const std::vector<TileLines>& found);
     void add_face_planes(const Tile& tile);

@@ -16,6 +16,7 @@
 #include "lines/tones.h"
 #include "render/border_map.h"
 #include "render/edges.h"
+#include "render/face_density.h"
 #include "render/face_map.h"
 #include "render/face_tiling.h"
 #include "render/ridge_search.h"
@@ -122,7 +123,13 @@ class LineFinder {
           density_(edges.no_lines),
           direct_density_(edges.no_lines) {
         if (front && edges.pipeline.goes_on()) specular_.emplace(edges);
-        if (borders_ != nullptr) sampler_.want_borders();
+        if (borders_ != nullptr) {
+            sampler_.want_borders();
+            if (!specular_) {
+                const std::size_t style = edges.style_of(LineType::mesh, 0);
+                face_density_.emplace(density_, 1.0F, edges.ink.styles[style].width_px);
+            }
+        }
         takes_shades_ = front && can_take_shades() && sampler_.want_shades();
         fills_grid_ = !takes_shades_ || ridges_ != nullptr || crosses_faces();
     }
@@ -289,6 +296,7 @@ class LineFinder {
     bool smooths_;         ///< the shading along lines
     bool keeps_segments_;  ///< and not only their strokes
     LineDensity density_, direct_density_;
+    std::optional<FaceDensity> face_density_;  ///< of borders, if they are of one width
     RenderStats stats_;
 };
 

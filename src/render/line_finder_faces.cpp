@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 
 #include "render/line_finder.h"
 #include "render/nearest_edges.h"
@@ -19,7 +18,11 @@ void LineFinder::map_borders(std::size_t first, std::size_t count) {
         const Block& block = blocks_[first + k];
         // Those cut off at the tile's end belong to the next tile, which may be at work.
         if (block.columns < kBlockSide || block.rows < kBlockSide) continue;
-        add_face_density(first + k);
+        if (face_density_) {
+            face_density_->add(block, hits_[first + k]);
+        } else {
+            add_face_density(first + k);
+        }
         borders_->put(block.x, block.y, border_packets_[k], hits_[first + k].t);
     }
 }
@@ -80,8 +83,7 @@ void LineFinder::map_block(int x, int y) {
     }
 }
 
-/// How long the lines between faces are in a block, from how often its points see different ones:
-/// a line of any direction crosses lattice edges 4 / pi times a spacing, on average.
+/// The same for objects that may differ in the width of their lines.
 void LineFinder::add_face_density(std::size_t block) {
     const Block& place = blocks_[block];
     const HitPacket& hits = hits_[block];
@@ -90,11 +92,9 @@ void LineFinder::add_face_density(std::size_t block) {
     const std::uint32_t object =
         *std::ranges::find_if(hits.object, [](std::uint32_t o) { return o != kNoObject; });
     if (!edges_.surfaces.is_mesh(object)) return;
-    // Of the 32 edges that hang on the block's points, 24 were compared.
-    constexpr float kLength = std::numbers::pi_v<float> / 4.0F * 32.0F / 24.0F;
     const Vec2f middle = {static_cast<float>(place.x) + 0.5F * kBlockSide,
                           static_cast<float>(place.y) + 0.5F * kBlockSide};
-    const float length = static_cast<float>(changes) * kLength * grid_.spacing;
+    const float length = face_length(changes, grid_.spacing);
     const float width = edges_.ink.styles[edges_.style_of(LineType::mesh, object)].width_px;
     density_.add(middle * grid_.spacing, length, width);
     if (specular_) direct_density_.add(middle * grid_.spacing, length, width);

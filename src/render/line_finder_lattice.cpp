@@ -43,6 +43,7 @@ void LineFinder::trace_lattice(const Tile& tile) {
     seen_.assign(blocks_.size(), 0);
     sampler_.find_blocks(blocks_, {});
     saw_anything_ = false;
+    if (face_density_) face_density_->enter(grid_.x0, grid_.y0, grid_.width, grid_.height);
     const std::size_t run = takes_shades_ ? 32 : 16;  // rays take as much room as all else
     for (std::size_t first = 0; first < blocks_.size(); first += run) {
         const std::size_t count = std::min(run, blocks_.size() - first);

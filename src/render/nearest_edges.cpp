@@ -59,30 +59,37 @@ std::uint32_t find_starts_lanes(const Lanes<std::uint32_t>& values, std::uint32_
     return starts;
 }
 
+/// The values of the row above from the i-th on; of the first row itself.
+HWY_INLINE hn::Vec<Numbers> row_above(const Lanes<std::uint32_t>& values, int i) {
+    if (i > 0) return hn::LoadU(kNumbers, values.data() + i - kBlockSide);
+    constexpr hn::RebindToSigned<Numbers> kPlaces;
+    const auto above = hn::Sub(hn::Iota(kPlaces, 0), hn::Set(kPlaces, kBlockSide));
+    const auto places =
+        hn::Max(above, hn::And(hn::Iota(kPlaces, 0), hn::Set(kPlaces, kBlockSide - 1)));
+    return hn::TableLookupLanes(hn::Load(kNumbers, values.data()),
+                                hn::IndicesFromVec(kNumbers, places));
+}
+
 int count_changes_lanes(const Lanes<std::uint32_t>& objects,
                         const Lanes<std::uint32_t>& primitives) {
-    const auto none = hn::Set(kRow, kNoObject);
-    const auto before_last = hn::FirstN(kRow, kBlockSide - 1);
-    auto changes = hn::Zero(kRow);
-    const auto count = [&](auto object, auto primitive, auto other_object,
-                           auto other_primitive) HWY_ATTR {
-        const auto alike = hn::And(hn::Eq(object, other_object), hn::Ne(object, none));
-        return hn::VecFromMask(kRow, hn::And(alike, hn::Ne(primitive, other_primitive)));
-    };
-    auto object = hn::Load(kRow, objects.data());
-    auto primitive = hn::Load(kRow, primitives.data());
-    for (int i = 0;; i += kBlockSide) {
-        const auto right =
-            count(object, primitive, hn::Shuffle0321(object), hn::Shuffle0321(primitive));
-        changes = hn::Sub(changes, hn::IfThenElseZero(before_last, right));
-        if (i + kBlockSide == kLanes) break;
-        const auto object_below = hn::Load(kRow, objects.data() + i + kBlockSide);
-        const auto primitive_below = hn::Load(kRow, primitives.data() + i + kBlockSide);
-        changes = hn::Sub(changes, count(object, primitive, object_below, primitive_below));
-        object = object_below;
-        primitive = primitive_below;
+    const auto none = hn::Set(kNumbers, kNoObject);
+    const auto column = hn::And(hn::Iota(kNumbers, 0), hn::Set(kNumbers, kBlockSide - 1));
+    const auto is_first = hn::Eq(column, hn::Zero(kNumbers));
+    std::size_t changes = 0;
+    for (int i = 0; i < kLanes; i += static_cast<int>(hn::MaxLanes(kNumbers))) {
+        const auto object = hn::Load(kNumbers, objects.data() + i);
+        const auto primitive = hn::Load(kNumbers, primitives.data() + i);
+        const auto is_hit = hn::Ne(object, none);
+        const auto differ = [&](auto other_object, auto other_primitive) HWY_ATTR {
+            return hn::And(hn::And(hn::Eq(object, other_object), is_hit),
+                           hn::Ne(primitive, other_primitive));
+        };
+        // The first of each row is compared with the last one, which does not count.
+        const auto beside = differ(hn::Shuffle2103(object), hn::Shuffle2103(primitive));
+        changes += hn::CountTrue(kNumbers, hn::AndNot(is_first, beside));
+        changes += hn::CountTrue(kNumbers, differ(row_above(objects, i), row_above(primitives, i)));
     }
-    return static_cast<int>(hn::GetLane(hn::SumOfLanes(kRow, changes)));
+    return static_cast<int>(changes);
 }
 
 void find_nearest_lanes(std::span<const ScreenEdge> edges, std::span<const SeenFace> faces, float x,

@@ -1,0 +1,100 @@
+#include "film/opaque_ink.h"
+
+// Everything between the two namespace macros is built once for each instruction set.
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "film/opaque_ink.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace ink::HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+using Floats = hn::CappedTag<float, kLanes>;
+using Pixels = hn::Rebind<std::uint32_t, Floats>;
+using Integers = hn::Rebind<std::int32_t, Floats>;
+constexpr Floats kFloats;
+constexpr Pixels kPixels;
+constexpr Integers kIntegers;
+constexpr std::size_t kStep = hn::MaxLanes(Floats());
+constexpr std::uint32_t kAlpha = 0xFF000000U;
+
+/// As many rows of 4 pixels as make a vector, and back.
+template <class Tag>
+HWY_INLINE hn::Vec<Tag> load_rows(Tag tag, const std::uint32_t* from, std::size_t stride) {
+    if constexpr (hn::MaxLanes(Tag()) <= kBlockSide) {
+        return hn::LoadU(tag, from);
+    } else {
+        const hn::Half<Tag> half;
+        const std::size_t next = hn::MaxLanes(Tag()) / (2 * kBlockSide) * stride;
+        return hn::Combine(tag, load_rows(half, from + next, stride),
+                           load_rows(half, from, stride));
+    }
+}
+template <class Tag>
+HWY_INLINE void store_rows(Tag tag, hn::Vec<Tag> value, std::uint32_t* to, std::size_t stride) {
+    if constexpr (hn::MaxLanes(Tag()) <= kBlockSide) {
+        hn::StoreU(value, tag, to);
+    } else {
+        const hn::Half<Tag> half;
+        const std::size_t next = hn::MaxLanes(Tag()) / (2 * kBlockSide) * stride;
+        store_rows(half, hn::LowerHalf(half, value), to, stride);
+        store_rows(half, hn::UpperHalf(half, value), to + next, stride);
+    }
+}
+
+/// One colour of pixels, at its place among their bits.
+template <int kShift>
+HWY_INLINE hn::Vec<Pixels> mix(hn::Vec<Pixels> below, hn::Vec<Floats> ink, hn::Vec<Floats> clear,
+                               float own) {
+    const auto set = [](float value) HWY_ATTR { return hn::Set(kFloats, value); };
+    const auto byte = hn::And(hn::ShiftRight<kShift>(below), hn::Set(kPixels, 0xFFU));
+    const auto value =
+        hn::Mul(hn::ConvertTo(kFloats, hn::BitCast(kIntegers, byte)), set(1.0F / 255.0F));
+    const auto mixed = hn::Add(hn::Mul(value, clear), hn::Mul(ink, set(own)));
+    const auto within = hn::Min(hn::Max(mixed, hn::Zero(kFloats)), set(1.0F));
+    const auto rounded = hn::Add(hn::Mul(within, set(255.0F)), set(0.5F));
+    return hn::ShiftLeft<kShift>(hn::BitCast(kPixels, hn::ConvertTo(kIntegers, rounded)));
+}
+
+bool lay_on_opaque_rows(const Lanes<float>& alpha, Color color, std::uint32_t* pixels,
+                        std::size_t stride) {
+    constexpr std::size_t kSteps = kLanes / kStep;
+    const auto at = [&](std::size_t k)
+                        HWY_ATTR { return pixels + k * (kStep / kBlockSide) * stride; };
+    auto all = hn::Set(kPixels, kAlpha);
+    for (std::size_t k = 0; k < kSteps; ++k) {
+        all = hn::And(all, load_rows(kPixels, at(k), stride));
+    }
+    if (!hn::AllTrue(kPixels, hn::Eq(all, hn::Set(kPixels, kAlpha)))) return false;
+    for (std::size_t k = 0; k < kSteps; ++k) {
+        const auto below = load_rows(kPixels, at(k), stride);
+        const auto ink = hn::Load(kFloats, alpha.data() + k * kStep);
+        const auto clear = hn::Sub(hn::Set(kFloats, 1.0F), ink);
+        const auto mixed =
+            hn::Or(hn::Or(mix<0>(below, ink, clear, color.r), mix<8>(below, ink, clear, color.g)),
+                   hn::Or(mix<16>(below, ink, clear, color.b), hn::Set(kPixels, kAlpha)));
+        const auto inked = hn::RebindMask(kPixels, hn::Ne(ink, hn::Zero(kFloats)));
+        store_rows(kPixels, hn::IfThenElse(inked, mixed, below), at(k), stride);
+    }
+    return true;
+}
+
+}  // namespace ink::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+
+namespace ink {
+
+HWY_EXPORT(lay_on_opaque_rows);
+
+bool lay_on_opaque(const Lanes<float>& alpha, Color color, std::uint32_t* pixels,
+                   std::size_t stride) {
+    return HWY_DYNAMIC_DISPATCH(lay_on_opaque_rows)(alpha, color, pixels, stride);
+}
+
+}  // namespace ink
+
+#endif
