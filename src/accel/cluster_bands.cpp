@@ -49,22 +49,80 @@ ClusterBands::ClusterBands(const BoundsPyramid& pyramid, std::size_t count, Vec2
       cover_(centre) {
     sort(pyramid);
     lay_axes(pyramid.at(pyramid.top(), 0), centre);
-    for (std::size_t place = 0; place < count; ++place) add(place);
+    for (std::size_t word = 0; word < words_; ++word) mark_bands(word);
+    for (std::size_t k = 0; k < bounds_.size(); ++k) cover_.add(bounds_[k], used(k));
 }
 
-void ClusterBands::add(std::size_t place) {
-    const BoundsPacket& all = bounds_[place / kLanes];
-    const auto lane = static_cast<int>(place % kLanes);
-    const Window bounds{all.left[lane], all.right[lane], all.top[lane], all.bottom[lane], 0.0F};
-    const std::uint64_t bit = std::uint64_t{1} << place % 64;
-    const auto mark = [&](const Axis& axis, float from, float to, auto& bands) {
-        for (int k = axis.band(from); k <= axis.band(to); ++k) {
-            bands[static_cast<std::size_t>(k) * words_ + place / 64] |= bit;
+/// How many clusters a packet holds.
+int ClusterBands::used(std::size_t packet) const {
+    return static_cast<int>(std::min<std::size_t>(kLanes, order_.size() - packet * kLanes));
+}
+
+namespace {
+
+INKTRACE_MULTIVERSION
+void find_spans(const BandAxis& columns, const BandAxis& rows, const BoundsPacket& bounds,
+                BandSpans& spans) {
+    for (int i = 0; i < kLanes; ++i) spans.left[i] = columns.band(bounds.left[i]);
+    for (int i = 0; i < kLanes; ++i) spans.right[i] = columns.band(bounds.right[i]);
+    for (int i = 0; i < kLanes; ++i) spans.top[i] = rows.band(bounds.top[i]);
+    for (int i = 0; i < kLanes; ++i) spans.bottom[i] = rows.band(bounds.bottom[i]);
+}
+
+/// The bits from `first` to `last`.
+std::uint64_t bits_between(int first, int last) {
+    return ~std::uint64_t{0} >> static_cast<unsigned>(63 - last) &
+           ~std::uint64_t{0} << static_cast<unsigned>(first);
+}
+
+/// Calls `visit(word, bits)` for the bits from `first` to `last`, 64 a word.
+template <class Visit>
+void for_words(int first, int last, const Visit& visit) {
+    for (int word = first / 64; word <= last / 64; ++word) {
+        visit(static_cast<std::size_t>(word),
+              bits_between(std::max(first - word * 64, 0), std::min(last - word * 64, 63)));
+    }
+}
+
+/// Makes bit k of word n bit n of word k (Warren, Hacker's Delight, 7-3): the blocks off the
+/// diagonal change places, ever smaller ones.
+INKTRACE_MULTIVERSION
+void transpose(std::array<std::uint64_t, 64>& words) {
+    std::uint64_t low = 0x00000000FFFFFFFFU;
+    for (unsigned side = 32; side != 0; side /= 2, low ^= low << side) {
+        for (unsigned first = 0; first < 64; first += 2 * side) {
+            for (unsigned k = first; k < first + side; ++k) {
+                const std::uint64_t change = (words[k] >> side ^ words[k + side]) & low;
+                words[k + side] ^= change;
+                words[k] ^= change << side;
+            }
         }
-    };
-    mark(columns_, bounds.left, bounds.right, of_column_);
-    mark(rows_, bounds.top, bounds.bottom, of_row_);
-    cover_.add(bounds);
+    }
+}
+
+}  // namespace
+
+/// Of 64 places at a time: first a bit for each band of a place, then a bit for each place of a
+/// band.
+void ClusterBands::mark_bands(std::size_t word) {
+    static_assert(kBands == 64);
+    std::array<std::uint64_t, kBands> columns{};
+    std::array<std::uint64_t, kBands> rows{};
+    BandSpans spans;
+    std::size_t place = 0;
+    for (std::size_t k = word * 64 / kLanes; place < 64 && k < bounds_.size(); ++k) {
+        find_spans(columns_, rows_, bounds_[k], spans);
+        for (int i = 0; i < used(k); ++i, ++place) {
+            columns[place] = bits_between(spans.left[i], spans.right[i]);
+            rows[place] = bits_between(spans.top[i], spans.bottom[i]);
+        }
+    }
+    transpose(columns);
+    transpose(rows);
+    for (std::size_t band = 0; band < kBands; ++band) {
+        of_column_[band * words_ + word] = columns[band];
+        of_row_[band * words_ + word] = rows[band];
+    }
 }
 
 namespace {
@@ -87,7 +145,7 @@ void intersect(const std::uint64_t* bands, std::size_t words, std::uint64_t* all
 
 void ClusterBands::find(const Window& window, std::vector<std::uint64_t>& places) const {
     places.resize(2 * words_);
-    const auto among = [&](const Axis& axis, float from, float to, const auto& bands,
+    const auto among = [&](const BandAxis& axis, float from, float to, const auto& bands,
                            std::uint64_t* all) {
         const auto first = static_cast<std::size_t>(axis.band(from));
         const auto last = static_cast<std::size_t>(axis.band(to));
@@ -119,7 +177,7 @@ void ClusterBands::sort(const BoundsPyramid& pyramid) {
 void ClusterBands::lay_axes(const BoundsPacket& top, Vec2f centre) {
     BoundsPacket whole = BoundsPacket::none();
     set_union(top, whole, 0);
-    const auto lay = [](float from, float to, float half) -> Axis {
+    const auto lay = [](float from, float to, float half) -> BandAxis {
         const float first = std::max(from, -half);
         const float size = std::min(to, half) - first;
         return {first, size > 0.0F ? kBands / size : 0.0F, kBands};
@@ -133,7 +191,7 @@ void ClusterBands::lay_axes(const BoundsPacket& top, Vec2f centre) {
 /// Cells of a block's side, or larger ones, where these would be too many.
 ClusterBands::Cover::Cover(Vec2f centre) {
     constexpr int kMostCells = 1024;
-    const auto lay = [=](float half) -> Axis {
+    const auto lay = [=](float half) -> BandAxis {
         const float side = std::max(static_cast<float>(kBlockSide), 2.0F * half / kMostCells);
         const int count =
             std::clamp(static_cast<int>(std::ceil(2.0F * half / side)), 1, kMostCells);
@@ -145,30 +203,17 @@ ClusterBands::Cover::Cover(Vec2f centre) {
     cells_.resize(words_ * static_cast<std::size_t>(rows_.count));
 }
 
-namespace {
-
-/// Calls `visit(word, bits)` for the bits from `first` to `last`, 64 a word.
-template <class Visit>
-void for_words(int first, int last, const Visit& visit) {
-    for (int word = first / 64; word <= last / 64; ++word) {
-        const int from = std::max(first - word * 64, 0);
-        const int to = std::min(last - word * 64, 63);
-        if (from > to) return;
-        visit(static_cast<std::size_t>(word),
-              ~std::uint64_t{0} >> (63 - to) & ~std::uint64_t{0} << from);
+void ClusterBands::Cover::add(const BoundsPacket& bounds, int count) {
+    BandSpans spans;
+    find_spans(columns_, rows_, bounds, spans);
+    for (int i = 0; i < count; ++i) {
+        for_words(spans.left[i], spans.right[i], [&](std::size_t word, std::uint64_t bits) {
+            std::uint64_t* cells = &cells_[static_cast<std::size_t>(spans.top[i]) * words_ + word];
+            for (int row = spans.top[i]; row <= spans.bottom[i]; ++row, cells += words_) {
+                *cells |= bits;
+            }
+        });
     }
-}
-
-}  // namespace
-
-void ClusterBands::Cover::add(const Window& bounds) {
-    const int last = rows_.band(bounds.bottom);
-    for_words(columns_.band(bounds.left), columns_.band(bounds.right),
-              [&](std::size_t word, std::uint64_t bits) {
-                  for (int row = rows_.band(bounds.top); row <= last; ++row) {
-                      cells_[static_cast<std::size_t>(row) * words_ + word] |= bits;
-                  }
-              });
 }
 
 std::uint64_t ClusterBands::Cover::met(const Window& first, float step, int count) const {

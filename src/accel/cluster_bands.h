@@ -7,8 +7,26 @@
 
 #include "accel/bounds_pyramid.h"
 #include "accel/screen_kernels.h"
+#include "base/multiversion.h"
 
 namespace ink {
+
+/// How a direction of the screen is cut into bands. What lies beyond belongs to the outermost.
+struct BandAxis {
+    float from = 0.0F, scale = 0.0F;
+    int count = 1;
+    INKTRACE_INLINE int band(float at) const {
+        const float place = (at - from) * scale;
+        const float last = static_cast<float>(count - 1);
+        const float positive = place > 0.0F ? place : 0.0F;  // of no number, zero
+        return static_cast<int>(positive < last ? positive : last);
+    }
+};
+
+/// The first and the last band that each of sixteen clusters reaches into.
+struct BandSpans {
+    Lanes<int> left, right, top, bottom;
+};
 
 /// All clusters of a picture, nearest first, and which of them reach into each of a few bands of
 /// columns and of rows: a bit a cluster. So those that reach into a part of the screen are found
@@ -39,22 +57,11 @@ class ClusterBands {
   private:
     static constexpr int kBands = 64;
 
-    /// How a direction of the screen is cut into bands. What lies beyond belongs to the outermost.
-    struct Axis {
-        float from = 0.0F, scale = 0.0F;
-        int count = 1;
-        int band(float at) const {
-            const float place = (at - from) * scale;
-            const float last = static_cast<float>(count - 1);
-            const float positive = place > 0.0F ? place : 0.0F;  // of no number, zero
-            return static_cast<int>(positive < last ? positive : last);
-        }
-    };
     /// Which of the picture's cells anything reaches into, a bit a cell.
     class Cover {
       public:
         explicit Cover(Vec2f centre);
-        void add(const Window& bounds);
+        void add(const BoundsPacket& bounds, int count);
         bool meets(const Window& box) const {
             const int left = columns_.band(box.left);
             const int right = columns_.band(box.right - kInside);
@@ -76,18 +83,19 @@ class ClusterBands {
 
         bool any(int left, int right, int top, int bottom) const;
 
-        Axis columns_, rows_;
+        BandAxis columns_, rows_;
         std::size_t words_;  ///< a row
         std::vector<std::uint64_t> cells_;
     };
 
     void sort(const BoundsPyramid& pyramid);
     void lay_axes(const BoundsPacket& top, Vec2f centre);
-    void add(std::size_t place);
+    int used(std::size_t packet) const;
+    void mark_bands(std::size_t word);
 
     std::vector<std::uint32_t> order_;
     std::vector<BoundsPacket> bounds_;
-    Axis columns_, rows_;
+    BandAxis columns_, rows_;
     std::size_t words_;                     ///< a band
     std::vector<std::uint64_t> of_column_;  ///< a bit a place, band by band
     std::vector<std::uint64_t> of_row_;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <bit>
 #include <cmath>
 #include <cstring>
@@ -16,6 +17,7 @@
 #include "accel/screen_kernels.h"
 #include "accel/screen_packets.h"
 #include "accel/sphere_range.h"
+#include "base/parallel.h"
 
 namespace ink {
 
@@ -363,21 +365,29 @@ bool ScreenFrameTracer::is_suited(const Window& part) const {
     const int down = probes(bottom - top);
     const auto most = static_cast<std::uint32_t>(kMostClustersPerHit *
                                                  static_cast<float>(across * down) * kSide * kSide);
-    ScreenTileTracer tile(view_);
-    ScreenEffort sum;
-    for (int k = 0; k < across * down && sum.clusters < most; ++k) {
-        const auto place = [](int i, int count, float from, float to) {
-            const float middle =
-                from + (to - from) * (static_cast<float>(i) + 0.5F) / static_cast<float>(count);
-            return std::floor(middle - 0.5F * kSide);
-        };
-        const Vec2f corner{place(k % across, across, left, right) + view_.projection.centre.x,
-                           place(k / across, down, top, bottom) + view_.projection.centre.y};
-        const ScreenEffort one = tile.probe(corner, most - sum.clusters);
-        sum.clusters += one.clusters;
-        sum.hits += one.hits;
-    }
-    return static_cast<float>(sum.clusters) <= kMostClustersPerHit * static_cast<float>(sum.hits);
+    const auto place = [](int i, int count, float from, float to) {
+        const float middle =
+            from + (to - from) * (static_cast<float>(i) + 0.5F) / static_cast<float>(count);
+        return std::floor(middle - 0.5F * kSide);
+    };
+    std::atomic<std::uint32_t> clusters = 0;
+    std::atomic<std::uint32_t> hits = 0;
+    constexpr std::size_t kGrain = 4;  // squares that share a tracer
+    parallel_ranges(static_cast<std::size_t>(across * down), kGrain, [&](auto begin, auto end) {
+        ScreenTileTracer tile(view_);
+        for (auto k = static_cast<int>(begin); k < static_cast<int>(end); ++k) {
+            const std::uint32_t so_far = clusters;
+            if (so_far >= most) return;
+            const Vec2f corner{place(k % across, across, left, right) + view_.projection.centre.x,
+                               place(k / across, down, top, bottom) + view_.projection.centre.y};
+            const ScreenEffort one = tile.probe(corner, most - so_far);
+            clusters += one.clusters;
+            hits += one.hits;
+        }
+    });
+    // Where there are more, a few squares may have been given up: the answer is no all the same.
+    return clusters < most &&
+           static_cast<float>(clusters) <= kMostClustersPerHit * static_cast<float>(hits);
 }
 
 }  // namespace

@@ -14,7 +14,7 @@ namespace ink {
 
 namespace {
 
-constexpr std::size_t kGrain = 1 << 15;
+constexpr std::size_t kGrain = 1 << 12;
 
 /// Sixteen spheres, or points, of radius 0.
 struct BallLanes {
