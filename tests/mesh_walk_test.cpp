@@ -1,7 +1,7 @@
 // Where lines cross the way between two points, from the shape of a mesh, against rays and closed
 // forms.
 
-#include "sampling/mesh_walk.h"
+#include "sampling/mesh_crosser.h"
 
 #include <gtest/gtest.h>
 
@@ -117,8 +117,19 @@ class Seen {
 
     MeshCrossing cross(Vec2f a, SurfaceKey first, Vec2f b, SurfaceKey second) const {
         expected_.clear();
-        return walk_.cross(a, first, b, second, {1.0F / 64.0F, 0.25F}, expected_);
+        const SeenPair pair{a, b, first, second, {1.0F / 64.0F, 0.25F}};
+        MeshCrossing crossing;
+        MeshCrosser(walk_).cross({&pair, 1}, {&crossing, 1}, expected_);
+        return crossing;
     }
+    /// Of all pairs together; what they expect to see goes to `expected`.
+    std::vector<MeshCrossing> cross(const std::vector<SeenPair>& pairs,
+                                    std::vector<SurfaceKey>& expected) const {
+        std::vector<MeshCrossing> crossings(pairs.size());
+        MeshCrosser(walk_).cross(pairs, crossings, expected);
+        return crossings;
+    }
+    const std::vector<SurfaceKey>& expected() const { return expected_; }
     /// Whether the ray that a crossing asks for sees what it should.
     bool confirmed(const MeshCrossing& crossing) const {
         if (!crossing.needs_check) return true;
@@ -321,6 +332,38 @@ TEST(MeshWalk, AgreesWithRaysOnMeshesWithManyFolds) {
         EXPECT_LT(found.wrong, 0.01 * found.limbs) << found.wrong << " of " << found.limbs;
         EXPECT_LT(found.unknown, 0.15 * found.pairs) << found.unknown << " of " << found.pairs;
     }
+}
+
+TEST(MeshWalk, FindsOfManyPairsTogetherWhatItFindsOfEach) {
+    std::mt19937 random(5);
+    const auto radius = [&] { return 0.75F + 0.35F * uniform(random); };
+    const Seen seen({globe(14, radius), box({-1, -1, -1}, {0.2, 0.1, 0.3})},
+                    view_from({1.3, 2.1, 4.7}, false));
+    std::vector<SeenPair> pairs;
+    seen.for_each_pair([&](Vec2f a, Sight at_a, Vec2f b, Sight at_b) {
+        pairs.push_back({a, b, at_a.key, at_b.key, {1.0F / 64.0F, 0.25F}});
+    });
+    std::ranges::shuffle(pairs, random);  // so that walks on either mesh take turns
+    std::vector<SurfaceKey> expected;
+    const std::vector<MeshCrossing> together = seen.cross(pairs, expected);
+    int limbs = 0;
+    for (std::size_t k = 0; k < pairs.size(); ++k) {
+        const auto& [from, to, first, second, checks] = pairs[k];
+        const MeshCrossing alone = seen.cross(from, first, to, second);
+        const MeshCrossing& found = together[k];
+        ASSERT_EQ(found.kind, alone.kind);
+        limbs += is_limb(found);
+        EXPECT_EQ(found.at, alone.at);
+        EXPECT_EQ(found.t, alone.t);
+        EXPECT_EQ(found.gap, alone.gap);
+        EXPECT_EQ(found.turn, alone.turn);
+        EXPECT_EQ(found.checked, alone.checked);
+        ASSERT_EQ(found.expected, alone.expected);
+        EXPECT_TRUE(std::equal(seen.expected().begin() + alone.first_expected,
+                               seen.expected().begin() + alone.first_expected + alone.expected,
+                               expected.begin() + found.first_expected));
+    }
+    EXPECT_GT(limbs, 300);
 }
 
 TEST(MeshWalk, AgreesWithRaysOnOpenBranchingAndCrossedMeshes) {

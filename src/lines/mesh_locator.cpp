@@ -17,33 +17,33 @@ void MeshLocator::locate(const SampleGrid& grid, std::span<const SuspectEdge> su
     start(grid, suspects, edges);
     for (int fold = 0; fold < kMostFolds && !open_.empty(); ++fold) {
         look(grid.spacing, crossings, left);
-        check(identify, crossings, left);
+        check(grid.spacing, identify, crossings, left);
     }
-    for (const Search& search : open_) left.push_back(search.crossing.edge);
+    for (const Search& search : open_) left.push_back(search.edge);
     if (!doubted_.empty()) drop_slits(grid, sample, left);
 }
 
 void MeshLocator::start(const SampleGrid& grid, std::span<const SuspectEdge> suspects,
                         std::span<const MeshEdge> edges) {
     open_.clear();
+    pairs_.clear();
     for (const MeshEdge& edge : edges) {
         const SuspectEdge& suspect = suspects[edge.edge];
         const int i = suspect.i + (suspect.down ? 0 : 1);
         const int j = suspect.j + (suspect.down ? 1 : 0);
-        Search& search = open_.emplace_back();
-        search.a = grid.point(suspect.i, suspect.j);
-        search.b = grid.point(i, j);
-        search.first = edge.first;
-        search.second = edge.second;
         const std::size_t a = grid.index(suspect.i, suspect.j);
         const std::size_t b = grid.index(i, j);
-        search.crossing.edge = edge.edge;
-        search.at_first = a;
-        search.at_second = b;
-        search.crossing.first = grid.id[a];
-        search.crossing.second = grid.id[b];
-        search.crossing.first_in_front = grid.t[a] <= grid.t[b];
+        open_.push_back({edge.edge, static_cast<std::uint32_t>(a), static_cast<std::uint32_t>(b),
+                         grid.id[a], grid.id[b], grid.t[a] <= grid.t[b]});
+        const Vec2f from = grid.point(suspect.i, suspect.j);
+        const Vec2f to = grid.point(i, j);
+        pairs_.push_back({from, to, edge.first, edge.second, checks_on(to - from, grid.spacing)});
     }
+}
+
+MeshChecks MeshLocator::checks_on(Vec2f way, float spacing) const {
+    const float size = spacing / length(way);
+    return {settings_.check_offset * size, settings_.slit_width * size};
 }
 
 /// At the meshes. What they settle is done with, of the rest `checked_` says what a ray must tell.
@@ -52,44 +52,61 @@ void MeshLocator::look(float spacing, std::vector<Crossing>& crossings,
     expected_.clear();
     checked_.clear();
     points_.clear();
-    for (Search& search : open_) {
-        const Vec2f way = search.b - search.a;
-        const float size = spacing / length(way);
-        search.mesh =
-            cross_(search.a, search.first, search.b, search.second,
-                   {settings_.check_offset * size, settings_.slit_width * size}, expected_);
-        search.crossing.point = search.a + way * static_cast<float>(search.mesh.at);
-        switch (classify(spacing, search)) {
+    found_.resize(pairs_.size());
+    cross_(pairs_, found_, expected_);
+    for (std::uint32_t n = 0; n < pairs_.size(); ++n) {
+        const Search& search = open_[n];
+        const SeenPair& pair = pairs_[n];
+        const MeshCrossing& mesh = found_[n];
+        Crossing crossing;
+        crossing.edge = search.edge;
+        crossing.first = search.first;
+        crossing.second = search.second;
+        crossing.first_in_front = search.first_in_front;
+        crossing.point = pair.from + (pair.to - pair.from) * static_cast<float>(mesh.at);
+        switch (classify(spacing, mesh, crossing)) {
             case Verdict::nothing: break;
-            case Verdict::unsettled: left.push_back(search.crossing.edge); break;
+            case Verdict::unsettled: left.push_back(search.edge); break;
             case Verdict::line:
-                if (!search.mesh.needs_check) {
-                    crossings.push_back(search.crossing);
+                if (!mesh.needs_check) {
+                    crossings.push_back(crossing);
                     break;
                 }
-                checked_.push_back(search);
-                points_.push_back(search.mesh.checked);
+                checked_.push_back({n, crossing});
+                points_.push_back(mesh.checked);
         }
     }
-    open_.clear();
 }
 
-void MeshLocator::check(const IdentifyFunction& identify, std::vector<Crossing>& crossings,
-                        std::vector<std::uint32_t>& left) {
+/// What the rays tell; what must be looked at again stays open.
+void MeshLocator::check(float spacing, const IdentifyFunction& identify,
+                        std::vector<Crossing>& crossings, std::vector<std::uint32_t>& left) {
     seen_.resize(points_.size());
     identify(points_, seen_);
+    std::size_t open = 0;
     for (std::size_t n = 0; n < checked_.size(); ++n) {
-        Search& search = checked_[n];
-        if (is_confirmed(search.mesh, seen_[n])) {
-            crossings.push_back(search.crossing);
-        } else if (goes_on(search, points_[n], seen_[n])) {
-            open_.push_back(search);
-        } else if (search.mesh.in_slit != MeshCrossing::InSlit::none) {
-            doubted_.push_back(search);
+        const auto& [number, crossing] = checked_[n];
+        const MeshCrossing& mesh = found_[number];
+        const Search search = open_[number];
+        if (is_confirmed(mesh, seen_[n])) {
+            crossings.push_back(crossing);
+        } else if (goes_on(mesh, crossing, seen_[n])) {
+            SeenPair pair = pairs_[number];
+            (crossing.first_in_front ? pair.from : pair.to) = points_[n];
+            (crossing.first_in_front ? pair.first : pair.second) = seen_[n];
+            pair.checks = checks_on(pair.to - pair.from, spacing);
+            pairs_[open] = pair;
+            open_[open] = search;
+            open_[open].first_in_front = crossing.first_in_front;
+            ++open;
+        } else if (mesh.in_slit != MeshCrossing::InSlit::none) {
+            doubted_.push_back({search, mesh.in_slit == MeshCrossing::InSlit::first, mesh.checked});
         } else {
-            left.push_back(search.crossing.edge);
+            left.push_back(search.edge);
         }
     }
+    open_.resize(open);
+    pairs_.resize(open);
 }
 
 /// Where the surface on the far side of the line goes on past the near end, that end looked into a
@@ -97,44 +114,43 @@ void MeshLocator::check(const IdentifyFunction& identify, std::vector<Crossing>&
 void MeshLocator::drop_slits(const SampleGrid& grid, const SampleFunction& sample,
                              std::vector<std::uint32_t>& left) {
     points_.clear();
-    for (const Search& search : doubted_) points_.push_back(search.mesh.checked);
+    for (const Doubt& doubt : doubted_) points_.push_back(doubt.past);
     samples_.resize(points_.size());
     sample(points_, samples_);
     for (std::size_t n = 0; n < doubted_.size(); ++n) {
-        const Search& search = doubted_[n];
-        const bool first = search.mesh.in_slit == MeshCrossing::InSlit::first;
+        const auto& [search, first, past] = doubted_[n];
         const Sample before = grid.sample(first ? search.at_second : search.at_first);
         const Sample within = grid.sample(first ? search.at_first : search.at_second);
         if (!is_slit(viewpoint_, before, within, samples_[n], least_turn(settings_))) {
-            left.push_back(search.crossing.edge);
+            left.push_back(search.edge);
         } else if (first) {
-            slits_.push_back(search.crossing.edge);
+            slits_.push_back(search.edge);
         }
     }
 }
 
 /// What kind of line a crossing belongs to, if to any.
-MeshLocator::Verdict MeshLocator::classify(float spacing, Search& search) const {
+MeshLocator::Verdict MeshLocator::classify(float spacing, const MeshCrossing& mesh,
+                                           Crossing& crossing) const {
     using Kind = MeshCrossing::Kind;
-    Crossing& crossing = search.crossing;
-    const Kind kind = search.mesh.kind;
+    const Kind kind = mesh.kind;
     const bool same_id = crossing.first == crossing.second;
     if (kind == Kind::first_limb || kind == Kind::second_limb) {
         crossing.first_in_front = kind == Kind::first_limb;
     }
     crossing.nearer = crossing.first_in_front ? crossing.first : crossing.second;
-    crossing.t = search.mesh.t;
+    crossing.t = mesh.t;
     switch (kind) {
         case Kind::unknown: return Verdict::unsettled;
         case Kind::smooth: return same_id ? Verdict::nothing : Verdict::unsettled;
         case Kind::crease:
             if (!same_id) return Verdict::unsettled;
             crossing.type = LineType::crease;
-            crossing.strength = crease_strength(
-                settings_, 2.0F * std::asin(std::min(0.5F * search.mesh.turn, 1.0F)));
+            crossing.strength =
+                crease_strength(settings_, 2.0F * std::asin(std::min(0.5F * mesh.turn, 1.0F)));
             return crossing.strength > 0.0F ? Verdict::line : Verdict::nothing;
         case Kind::first_limb:
-        case Kind::second_limb: return classify_limb(spacing, search);
+        case Kind::second_limb: return classify_limb(spacing, mesh, crossing);
         case Kind::seam:
             crossing.type = LineType::intersection;
             return same_id ? Verdict::unsettled : Verdict::line;
@@ -143,16 +159,16 @@ MeshLocator::Verdict MeshLocator::classify(float spacing, Search& search) const 
 }
 
 /// A limb that touches what is behind it bounds an intersection.
-MeshLocator::Verdict MeshLocator::classify_limb(float spacing, Search& search) const {
-    const MeshCrossing& mesh = search.mesh;
-    const bool same_id = search.crossing.first == search.crossing.second;
+MeshLocator::Verdict MeshLocator::classify_limb(float spacing, const MeshCrossing& mesh,
+                                                Crossing& crossing) const {
+    const bool same_id = crossing.first == crossing.second;
     const float interval = std::ldexp(spacing, -settings_.steps);
     const bool touches = mesh.gap <= kPositionRounding + interval * mesh.footprint;
     if (touches && same_id) return Verdict::unsettled;
-    search.crossing.type = touches       ? LineType::intersection
-                           : mesh.at_rim ? LineType::boundary
-                           : same_id     ? LineType::self_occlusion
-                                         : LineType::silhouette;
+    crossing.type = touches       ? LineType::intersection
+                    : mesh.at_rim ? LineType::boundary
+                    : same_id     ? LineType::self_occlusion
+                                  : LineType::silhouette;
     return Verdict::line;
 }
 
@@ -165,17 +181,12 @@ bool MeshLocator::is_confirmed(const MeshCrossing& mesh, SurfaceKey seen) const 
 }
 
 /// At an outline, what ends may only be one of several folds of a surface; the last one counts.
-/// Cuts off what lies before the fold that was seen.
-bool MeshLocator::goes_on(Search& search, Vec2f checked, SurfaceKey seen) const {
-    const Crossing& crossing = search.crossing;
-    const bool within = search.mesh.checked_at > 0.0F && search.mesh.checked_at < 1.0F;
-    if (!within || crossing.type == LineType::intersection || crossing.first == crossing.second ||
-        seen.object == SurfaceKey::kNothing || id_of_(seen) != crossing.nearer) {
-        return false;
-    }
-    (crossing.first_in_front ? search.a : search.b) = checked;
-    (crossing.first_in_front ? search.first : search.second) = seen;
-    return true;
+/// What lies before the fold that was seen is cut off.
+bool MeshLocator::goes_on(const MeshCrossing& mesh, const Crossing& crossing,
+                          SurfaceKey seen) const {
+    const bool within = mesh.checked_at > 0.0F && mesh.checked_at < 1.0F;
+    return within && crossing.type != LineType::intersection && crossing.first != crossing.second &&
+           seen.object != SurfaceKey::kNothing && id_of_(seen) == crossing.nearer;
 }
 
 }  // namespace ink

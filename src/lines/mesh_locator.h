@@ -47,35 +47,48 @@ class MeshLocator {
     std::span<const std::uint32_t> slits() const { return slits_; }
 
   private:
-    /// The part of a lattice edge that is looked at, and what was found there.
+    /// A lattice edge, or a part of it, that is looked at.
     struct Search {
-        Vec2f a, b;
-        SurfaceKey first, second;         ///< seen there
-        std::size_t at_first, at_second;  ///< points of the grid
-        MeshCrossing mesh{};
-        Crossing crossing{};
+        std::uint32_t edge;                 ///< index of the suspect edge
+        std::uint32_t at_first, at_second;  ///< points of the grid
+        GeometryId first, second;           ///< seen there
+        bool first_in_front;
+    };
+    /// One with a line, where a ray must confirm it.
+    struct Checked {
+        std::uint32_t number;  ///< of the search
+        Crossing crossing;
+    };
+    /// One whose end may look into a slit.
+    struct Doubt {
+        Search search;
+        bool first;
+        Vec2f past;  ///< that end
     };
     enum class Verdict : std::uint8_t { nothing, line, unsettled };
 
     void start(const SampleGrid& grid, std::span<const SuspectEdge> suspects,
                std::span<const MeshEdge> edges);
+    MeshChecks checks_on(Vec2f way, float spacing) const;
     void look(float spacing, std::vector<Crossing>& crossings, std::vector<std::uint32_t>& left);
-    void check(const IdentifyFunction& identify, std::vector<Crossing>& crossings,
+    void check(float spacing, const IdentifyFunction& identify, std::vector<Crossing>& crossings,
                std::vector<std::uint32_t>& left);
     void drop_slits(const SampleGrid& grid, const SampleFunction& sample,
                     std::vector<std::uint32_t>& left);
-    Verdict classify(float spacing, Search& search) const;
-    Verdict classify_limb(float spacing, Search& search) const;
+    Verdict classify(float spacing, const MeshCrossing& mesh, Crossing& crossing) const;
+    Verdict classify_limb(float spacing, const MeshCrossing& mesh, Crossing& crossing) const;
     bool is_confirmed(const MeshCrossing& mesh, SurfaceKey seen) const;
-    bool goes_on(Search& search, Vec2f checked, SurfaceKey seen) const;
+    bool goes_on(const MeshCrossing& mesh, const Crossing& crossing, SurfaceKey seen) const;
 
     Viewpoint viewpoint_;
     LocateSettings settings_;
     MeshCrossingFunction cross_;
     GeometryFunction id_of_;
     std::vector<Search> open_;
-    std::vector<Search> checked_;  ///< those that a ray must confirm
-    std::vector<Search> doubted_;  ///< those one end of which may look into a slit
+    std::vector<SeenPair> pairs_;      ///< of each search: the ends of what is looked at
+    std::vector<MeshCrossing> found_;  ///< what was found there
+    std::vector<Checked> checked_;
+    std::vector<Doubt> doubted_;
     std::vector<std::uint32_t> slits_;
     std::vector<Vec2f> points_;
     std::vector<SurfaceKey> expected_, seen_;

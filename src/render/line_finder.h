@@ -22,6 +22,7 @@
 #include "render/ridge_search.h"
 #include "render/specular_search.h"
 #include "render/tiles.h"
+#include "sampling/mesh_crosser.h"
 #include "sampling/sampler.h"
 #include "sampling/samples.h"
 #include "shading/shading.h"
@@ -103,11 +104,12 @@ class LineFinder {
               sample(points, out);
           }),
           ball_locator_(edges.viewpoint, edges.locate),
+          mesh_crosser_(edges.mesh_walk),
           mesh_locator_(
               edges.viewpoint, edges.locate,
-              [&edges](Vec2f from, SurfaceKey first, Vec2f to, SurfaceKey second,
-                       const MeshChecks& checks, std::vector<SurfaceKey>& expected) {
-                  return edges.mesh_walk.cross(from, first, to, second, checks, expected);
+              [this](std::span<const SeenPair> pairs, std::span<MeshCrossing> crossings,
+                     std::vector<SurfaceKey>& expected) {
+                  mesh_crosser_.cross(pairs, crossings, expected);
               },
               [&edges](SurfaceKey key) {
                   return edges.pipeline.ids.resolve(key.object, key.primitive);
@@ -244,6 +246,7 @@ class LineFinder {
     Locator locator_;
     SampleFunction sample_;
     BallLocator ball_locator_;
+    MeshCrosser mesh_crosser_;
     MeshLocator mesh_locator_;
     IdentifyFunction identify_;
     SurfaceFunction describe_;

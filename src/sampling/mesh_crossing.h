@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <functional>
 #include <limits>
+#include <span>
 #include <vector>
 
 #include "base/vec.h"
@@ -52,9 +53,16 @@ struct MeshChecks {
     float slit;
 };
 
-/// Finds the crossing between two points, and adds to a list which surfaces a check may see.
+/// A point of the screen and its neighbour, and what they see.
+struct SeenPair {
+    Vec2f from, to;
+    SurfaceKey first, second;
+    MeshChecks checks;
+};
+
+/// Finds the crossings of as many pairs, and adds to a list which surfaces checks may see.
 using MeshCrossingFunction =
-    std::function<MeshCrossing(Vec2f from, SurfaceKey first, Vec2f to, SurfaceKey second,
-                               const MeshChecks& checks, std::vector<SurfaceKey>& expected)>;
+    std::function<void(std::span<const SeenPair> pairs, std::span<MeshCrossing> crossings,
+                       std::vector<SurfaceKey>& expected)>;
 
 }  // namespace ink
