@@ -55,6 +55,10 @@ class PacketStore {
         if (!has(cluster)) ink::prefetch(clusters_, cluster, wants_shades_);
     }
 
+    void prefetch_order(std::uint32_t cluster) const {
+        if (!has(cluster)) ink::prefetch_order(clusters_, cluster);
+    }
+
     /// To be called before the first `get`: the sides of triangles are found as well.
     void want_sides() { wants_sides_ = true; }
     const PacketSides* sides() const { return sides_.data(); }
@@ -62,6 +66,7 @@ class PacketStore {
     void want_shades() { wants_shades_ = true; }
     /// Neither is found any more.
     void want_points_only() { wants_sides_ = wants_shades_ = false; }
+    bool wants_shades() const { return wants_shades_; }
     const PacketShades* shades() const { return shades_.data(); }
 
   private:

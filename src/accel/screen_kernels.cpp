@@ -331,15 +331,18 @@ struct StartedLanes {
         : x(hn::Sub(load(points.x, i), set(lens.centre_x))),
           y(hn::Sub(load(points.y, i), set(lens.centre_y))),
           on(hn::RebindMask(kFloats, hn::Ne(load(points.active, i), hn::Zero(kIntegers)))) {
+        hn::Store(x, kFloats, front.x.data() + i);
+        hn::Store(y, kFloats, front.y.data() + i);
+        hn::Store(hn::IfThenElse(on, set(kInfinity), set(-kInfinity)), kFloats,
+                  front.depth.data() + i);
+    }
+
+    HWY_INLINE void foreshorten(const Lens& lens, int i, Front& front) const {
         const auto slope_x = hn::Mul(x, set(lens.slope_step));
         const auto slope_y = hn::Mul(y, set(lens.slope_step));
         const auto squared =
             hn::Add(hn::Add(set(1.0F), hn::Mul(slope_x, slope_x)), hn::Mul(slope_y, slope_y));
-        hn::Store(x, kFloats, front.x.data() + i);
-        hn::Store(y, kFloats, front.y.data() + i);
         hn::Store(hn::Div(set(1.0F), squared), kFloats, front.foreshortening.data() + i);
-        hn::Store(hn::IfThenElse(on, set(kInfinity), set(-kInfinity)), kFloats,
-                  front.depth.data() + i);
     }
 };
 
@@ -354,6 +357,7 @@ void start_front(const Projection& projection, const PointPacket& points, Front&
     float farthest = -kInfinity;
     for (int i = 0; i < kLanes; i += kStep) {
         const StartedLanes lanes(lens, points, i, front);
+        lanes.foreshorten(lens, i, front);
         left = hn::Min(left, hn::IfThenElse(lanes.on, lanes.x, infinity));
         top = hn::Min(top, hn::IfThenElse(lanes.on, lanes.y, infinity));
         right = hn::Max(right, hn::IfThenElse(lanes.on, lanes.x, minus_infinity));
@@ -366,7 +370,7 @@ void start_front(const Projection& projection, const PointPacket& points, Front&
                     hn::GetLane(hn::MaxOfLanes(kFloats, bottom)), farthest};
 }
 
-void start_fronts(const Projection& projection, std::span<const PointPacket> points,
+void start_fronts(const Projection& projection, std::span<const PointPacket> points, bool flat,
                   Front* fronts) {
     const Lens lens(projection);
     for (const PointPacket& packet : points) {
@@ -374,6 +378,7 @@ void start_fronts(const Projection& projection, std::span<const PointPacket> poi
         front.window.farthest = -kInfinity;
         for (int i = 0; i < kLanes; i += kStep) {
             const StartedLanes lanes(lens, packet, i, front);
+            if (!flat) lanes.foreshorten(lens, i, front);
             if (!hn::AllFalse(kFloats, lanes.on)) front.window.farthest = kInfinity;
         }
     }
@@ -424,8 +429,9 @@ void Front::start(const Projection& projection, const PointPacket& points) {
     HWY_DYNAMIC_DISPATCH(start_front)(projection, points, *this);
 }
 
-void start_cells(const Projection& projection, std::span<const PointPacket> points, Front* fronts) {
-    HWY_DYNAMIC_DISPATCH(start_fronts)(projection, points, fronts);
+void start_cells(const Projection& projection, std::span<const PointPacket> points, bool flat,
+                 Front* fronts) {
+    HWY_DYNAMIC_DISPATCH(start_fronts)(projection, points, flat, fronts);
 }
 
 }  // namespace ink

@@ -20,8 +20,11 @@ struct Front {
     void start(const Projection& projection, const PointPacket& points);
 };
 
-/// Starts the fronts of cells of a raster, of whose windows only `farthest` is needed.
-void start_cells(const Projection& projection, std::span<const PointPacket> points, Front* fronts);
+/// Starts the fronts of cells of a raster, of whose windows only `farthest` is needed; nor is
+/// their foreshortening, which takes a division, if they are `flat`: of triangles that will be seen
+/// (see `see`).
+void start_cells(const Projection& projection, std::span<const PointPacket> points, bool flat,
+                 Front* fronts);
 
 /// Fronts in the cells of a raster, row by row. Four by four cells are asked together whether a
 /// primitive matters to them; such a window may begin at any cell, so rows of cells end in kBeyond
@@ -70,10 +73,11 @@ bool matters(const BoundsPacket& bounds, int lane, const FrontRaster& raster);
 /// The front as hits.
 void resolve(const Front& front, const RayPacket& rays, const ScreenPacket* packets,
              HitPacket& hits);
-/// A front whose hits are all triangles, see TileTracer::see. `places` may be null.
-void see(const Basis& basis, const Front& front, const PacketShades* shades, HitPacket& hits,
-         NormalPacket& normals, PlacePacket* places);
-/// The same without normals and barycentric coordinates, which are left as they are.
+/// Fronts whose hits are all triangles, see TileTracer::see; as many hits and normals, and places
+/// unless these are null.
+void see(const Basis& basis, std::span<const Front> fronts, const PacketShades* shades,
+         HitPacket* hits, NormalPacket* normals, PlacePacket* places);
+/// The front as hits without normals and barycentric coordinates, which are left as they are.
 void identify(const Front& front, const ScreenPacket* packets, HitPacket& hits);
 
 }  // namespace ink

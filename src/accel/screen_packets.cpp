@@ -157,6 +157,13 @@ void prefetch(const Clusters& clusters, std::uint32_t cluster, bool shades) {
     }
 }
 
+void prefetch_order(const Clusters& clusters, std::uint32_t cluster) {
+    const Cluster& own = clusters.clusters[cluster];
+    // They may lie on two cache lines.
+    __builtin_prefetch(&clusters.order[own.first]);
+    __builtin_prefetch(&clusters.order[own.first + own.count - 1U]);
+}
+
 void prepare(const Basis& basis, const BoxLanes& boxes, std::size_t used, BoundsPacket& packet) {
     HWY_DYNAMIC_DISPATCH(prepare_boxes)(basis, boxes, packet);
     empty_unused(used, packet);

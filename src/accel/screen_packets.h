@@ -147,8 +147,10 @@ void prepare_shades(const Basis& basis, const TriangleLanes& triangles,
 void prepare(const Basis& basis, const Clusters& clusters, const Cluster& cluster,
              ScreenPacket& packet, PacketShades* shades = nullptr);
 
-/// Asks the cache for what `prepare` will read of a cluster, with `shades` or without.
+/// Asks the cache for what `prepare` will read of a cluster, with `shades` or without. Which
+/// primitives these are must be read first, and should be asked for even earlier.
 void prefetch(const Clusters& clusters, std::uint32_t cluster, bool shades);
+void prefetch_order(const Clusters& clusters, std::uint32_t cluster);
 
 /// Screen bounds of the first `used` of sixteen boxes.
 void prepare(const Basis& basis, const BoxLanes& boxes, std::size_t used, BoundsPacket& packet);

@@ -1,3 +1,4 @@
+#include <array>
 #include <bit>
 
 #include "accel/screen_kernels.h"
@@ -67,32 +68,46 @@ HWY_INLINE void store(const Vectors& v, int i, Lanes<float>& x, Lanes<float>& y,
     hn::Store(v.z, kFloats, z.data() + i);
 }
 
-/// How far something at a depth is along the ray through q.
-HWY_INLINE Vector distance(const Basis& basis, Vector qx, Vector qy, Vector depth) {
-    const auto slope = set(static_cast<float>(basis.slope_step));
-    const auto x = hn::Mul(qx, slope);
-    const auto y = hn::Mul(qy, slope);
-    const auto squared = hn::Add(hn::Add(set(1.0F), hn::Mul(x, x)), hn::Mul(y, y));
-    return hn::Mul(depth, hn::Sqrt(squared));
-}
+/// Rays of a projection, rounded to floats: at a depth, the one through q is at start + (right q.x
+/// + down q.y) (origin_step + slope_step depth) + forward depth.
+struct RayFloats {
+    float origin_step, slope_step;
+    std::array<float, 3> start, right, down, forward;
 
-/// Where the ray through q is at a depth.
-HWY_INLINE Vectors place(const Basis& basis, Vector qx, Vector qy, Vector depth) {
-    const auto number = [](double value) { return set(static_cast<float>(value)); };
-    const auto pixel = hn::Add(number(basis.origin_step), hn::Mul(depth, number(basis.slope_step)));
-    const auto right = hn::Mul(qx, pixel);
-    const auto down = hn::Mul(qy, pixel);
-    const auto put = [&](double start, double r, double d, double f) {
-        const auto across = hn::Add(hn::Mul(right, number(r)), hn::Mul(down, number(d)));
-        return hn::Add(hn::Add(number(start), hn::Mul(depth, number(f))), across);
-    };
-    return {put(basis.sx, basis.rx, basis.dx, basis.fx),
-            put(basis.sy, basis.ry, basis.dy, basis.fy),
-            put(basis.sz, basis.rz, basis.dz, basis.fz)};
-}
+    explicit RayFloats(const Basis& b)
+        : origin_step(static_cast<float>(b.origin_step)),
+          slope_step(static_cast<float>(b.slope_step)),
+          start(rounded(b.sx, b.sy, b.sz)),
+          right(rounded(b.rx, b.ry, b.rz)),
+          down(rounded(b.dx, b.dy, b.dz)),
+          forward(rounded(b.fx, b.fy, b.fz)) {}
 
-void see_front(const Basis& basis, const Front& front, const PacketShades* shades, HitPacket& hits,
-               NormalPacket& normals, PlacePacket* places) {
+    static std::array<float, 3> rounded(double x, double y, double z) {
+        return {static_cast<float>(x), static_cast<float>(y), static_cast<float>(z)};
+    }
+
+    HWY_INLINE Vectors place(Vector qx, Vector qy, Vector depth) const {
+        const auto pixel = hn::Add(set(origin_step), hn::Mul(depth, set(slope_step)));
+        const auto x = hn::Mul(qx, pixel);
+        const auto y = hn::Mul(qy, pixel);
+        const auto along_axis = [&](std::size_t axis) {
+            const auto across = hn::Add(hn::Mul(x, set(right[axis])), hn::Mul(y, set(down[axis])));
+            return hn::Add(hn::Add(set(start[axis]), hn::Mul(depth, set(forward[axis]))), across);
+        };
+        return {along_axis(0), along_axis(1), along_axis(2)};
+    }
+
+    /// From where the ray starts.
+    HWY_INLINE Vector distance(Vector qx, Vector qy, Vector depth) const {
+        const auto x = hn::Mul(qx, set(slope_step));
+        const auto y = hn::Mul(qy, set(slope_step));
+        const auto squared = hn::Add(hn::Add(set(1.0F), hn::Mul(x, x)), hn::Mul(y, y));
+        return hn::Mul(depth, hn::Sqrt(squared));
+    }
+};
+
+HWY_INLINE void see_front(const RayFloats& rays, const Front& front, const PacketShades* shades,
+                          HitPacket& hits, NormalPacket& normals, PlacePacket* places) {
     for (int i = 0; i < kLanes; i += kStep) {
         const auto depth = load(front.depth, i);
         const auto hit = hn::And(hn::Lt(depth, set(kInfinity)), hn::Gt(depth, set(-kInfinity)));
@@ -112,10 +127,19 @@ void see_front(const Basis& basis, const Front& front, const PacketShades* shade
         hn::Store(seen.object, kIndices, hits.object.data() + i);
         hn::Store(seen.primitive, kIndices, hits.primitive.data() + i);
         if (places == nullptr) continue;
-        store(place(basis, qx, qy, hn::IfThenElseZero(hit, depth)), i, places->x, places->y,
+        store(rays.place(qx, qy, hn::IfThenElseZero(hit, depth)), i, places->x, places->y,
               places->z);
-        const auto t = distance(basis, qx, qy, depth);
+        const auto t = rays.distance(qx, qy, depth);
         hn::Store(hn::IfThenElse(hit, t, set(kInfinity)), kFloats, hits.t.data() + i);
+    }
+}
+
+void see_fronts(const Basis& basis, std::span<const Front> fronts, const PacketShades* shades,
+                HitPacket* hits, NormalPacket* normals, PlacePacket* places) {
+    const RayFloats rays(basis);
+    for (std::size_t k = 0; k < fronts.size(); ++k) {
+        see_front(rays, fronts[k], shades, hits[k], normals[k],
+                  places == nullptr ? nullptr : &places[k]);
     }
 }
 
@@ -126,11 +150,11 @@ HWY_AFTER_NAMESPACE();
 
 namespace ink {
 
-HWY_EXPORT(see_front);
+HWY_EXPORT(see_fronts);
 
-void see(const Basis& basis, const Front& front, const PacketShades* shades, HitPacket& hits,
-         NormalPacket& normals, PlacePacket* places) {
-    HWY_DYNAMIC_DISPATCH(see_front)(basis, front, shades, hits, normals, places);
+void see(const Basis& basis, std::span<const Front> fronts, const PacketShades* shades,
+         HitPacket* hits, NormalPacket* normals, PlacePacket* places) {
+    HWY_DYNAMIC_DISPATCH(see_fronts)(basis, fronts, shades, hits, normals, places);
 }
 
 }  // namespace ink

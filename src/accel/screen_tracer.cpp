@@ -84,10 +84,8 @@ class ScreenTileTracer final : public TileTracer {
     void want_points_only() override { store_.want_points_only(); }
     void see(std::size_t first, std::span<HitPacket> hits, std::span<NormalPacket> normals,
              std::span<PlacePacket> places) override {
-        for (std::size_t k = 0; k < hits.size(); ++k) {
-            ink::see(view_.basis, fronts_[first + k], store_.shades(), hits[k], normals[k],
-                     places.empty() ? nullptr : &places[k]);
-        }
+        ink::see(view_.basis, std::span(fronts_).subspan(first, hits.size()), store_.shades(),
+                 hits.data(), normals.data(), places.empty() ? nullptr : places.data());
     }
     bool find_sides(std::size_t first, std::span<SidesPacket> sides) override {
         for (std::size_t k = 0; k < sides.size(); ++k) {
@@ -164,7 +162,7 @@ void ScreenTileTracer::resolve(std::size_t first, std::span<const PointPacket> /
 /// The first packets lie on a raster.
 void ScreenTileTracer::start(std::span<const PointPacket> points, std::size_t on_raster) {
     if (fronts_.size() < points.size()) fronts_.resize(points.size());
-    start_cells(view_.projection, points.first(on_raster), fronts_.data());
+    start_cells(view_.projection, points.first(on_raster), store_.wants_shades(), fronts_.data());
     for (std::size_t k = on_raster; k < points.size(); ++k) {
         fronts_[k].start(view_.projection, points[k]);
     }
@@ -209,6 +207,7 @@ void ScreenTileTracer::find_fronts(const FrontRaster& raster, std::uint32_t most
         if (!(candidates_.depth(k * kLanes) < most)) return;
         const std::size_t end = std::min((k + 1) * kLanes, candidates_.count());
         for (std::size_t i = k * kLanes; i < end; ++i) {
+            if (i + 2 < end) store_.prefetch_order(candidates_.cluster(i + 2));
             if (i + 1 < end) store_.prefetch(candidates_.cluster(i + 1));
             if (!matters(candidates_.bounds(k), static_cast<int>(i % kLanes), raster)) continue;
             const std::uint32_t packet = packet_of(i);

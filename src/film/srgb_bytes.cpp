@@ -31,6 +31,16 @@ HWY_INLINE hn::Vec<Integers> srgb_byte(const SrgbBytes& table, hn::Vec<Floats> l
     return hn::ShiftRight<SrgbBytes::kShift>(hn::Add(entry, within));
 }
 
+/// The three channels of a pixel, R lowest. Grey takes one look-up.
+HWY_INLINE hn::Vec<Integers> srgb_bytes(const SrgbBytes& table, hn::Vec<Floats> r,
+                                        hn::Vec<Floats> g, hn::Vec<Floats> b) {
+    const auto red = srgb_byte(table, r);
+    const bool grey = hn::AllTrue(kFloats, hn::And(hn::Eq(r, g), hn::Eq(g, b)));
+    const auto green = grey ? red : srgb_byte(table, g);
+    const auto blue = grey ? red : srgb_byte(table, b);
+    return hn::Or(hn::Or(red, hn::ShiftLeft<8>(green)), hn::ShiftLeft<16>(blue));
+}
+
 void encode(const SrgbBytes& table, const ColorPacket& linear, Lanes<std::uint32_t>& bytes) {
     const auto zero = hn::Zero(kFloats);
     const auto one = hn::Set(kFloats, 1.0F);
@@ -49,9 +59,7 @@ void encode(const SrgbBytes& table, const ColorPacket& linear, Lanes<std::uint32
         const auto alpha = hn::ConvertTo(
             kIntegers, hn::Add(hn::Mul(hn::Min(hn::Max(a, zero), one), hn::Set(kFloats, 255.0F)),
                                hn::Set(kFloats, 0.5F)));
-        const auto pixel =
-            hn::Or(hn::Or(srgb_byte(table, r), hn::ShiftLeft<8>(srgb_byte(table, g))),
-                   hn::Or(hn::ShiftLeft<16>(srgb_byte(table, b)), hn::ShiftLeft<24>(alpha)));
+        const auto pixel = hn::Or(srgb_bytes(table, r, g, b), hn::ShiftLeft<24>(alpha));
         hn::Store(hn::BitCast(hn::RebindToUnsigned<Integers>(), pixel),
                   hn::RebindToUnsigned<Integers>(), bytes.data() + i);
     }

@@ -62,6 +62,7 @@ class EdgeSmoothing {
     /// Adds what there is to the block with pixel (x, y), which lies in the tile; its pixels on the
     /// tile's fringe are left as they are.
     void apply(int x, int y, ColorPacket& colors) const;
+    bool changes_any() const { return any_; }
     bool changes(int x, int y) const { return any_ && touched_[block(x, y)] != 0; }
 
     /// Copies what there is for the fringe, and beyond it. The colours of its pixels are the

@@ -86,32 +86,45 @@ void LineFinder::put_pixels(const Tile& tile) {
     const Timer timer(stats_.shade_ms);
     const Timer phase(stats_.film_ms);
     const Size size = edges_.pipeline.film.size();
+    const int x0 = std::max(tile.x0, 0);
+    const int x1 = std::min(tile.x1, size.width);
     for (int y = std::max(tile.y0, 0); y < std::min(tile.y1, size.height); y += kBlockSide) {
-        const int x0 = std::max(tile.x0, 0);
-        block_row_.clear();
-        mixed_.clear();
-        mixed_.reserve(static_cast<std::size_t>(tile.x1 - tile.x0));  // what points to them stays
-        for (int x = x0; x < std::min(tile.x1, size.width); x += kBlockSide) {
-            block_row_.push_back(pixel_block(x, y));
-            if (edges_.pipeline.aovs) put_aovs({x, y});
-        }
+        gather_row(x0, x1, y);
         edges_.pipeline.film.put_row(x0, y, block_row_);
+        for (int x = x0; edges_.pipeline.aovs && x < x1; x += kBlockSide) put_aovs({x, y});
     }
     Film::finish_rows();
     if (smooths_) keep_fringe(tile);
 }
 
-/// The block of pixels at (x, y): one lattice block, or the mean over q x q of them. Null if it is
-/// background.
-const ColorPacket* LineFinder::pixel_block(int x, int y) {
+/// A row of blocks of pixels, null where they are background.
+void LineFinder::gather_row(int x0, int x1, int y) {
+    const bool changes = smooths_ && smoothing_.changes_any();
+    const auto count = static_cast<std::size_t>((x1 - x0 + kBlockSide - 1) / kBlockSide);
+    block_row_.assign(count, nullptr);
+    if (!saw_anything_ && !changes) return;
+    mixed_.clear();
+    mixed_.reserve(count);  // what points to them stays
+    const bool as_traced = edges_.q == 1;
+    const std::uint32_t* const blocks = &block_at_[static_cast<std::size_t>(
+        (y - grid_.y0) / kBlockSide * blocks_across_ + (x0 - grid_.x0) / kBlockSide)];
+    for (std::size_t n = 0; as_traced && n < count; ++n) {
+        const std::uint32_t k = blocks[n];
+        if (k != kEmptyBlock && seen_[k] != 0) block_row_[n] = &colors_[k];
+    }
+    for (std::size_t n = 0; n < count; ++n) {
+        const int x = x0 + static_cast<int>(n) * kBlockSide;
+        if (!as_traced || (changes && smoothing_.changes(x, y))) block_row_[n] = mixed_block(x, y);
+    }
+}
+
+/// The block of pixels at (x, y): the mean over q x q blocks of the lattice, and what lines change.
+/// Null if it is background.
+const ColorPacket* LineFinder::mixed_block(int x, int y) {
     const int q = edges_.q;
     const int i0 = (x * q - grid_.x0) / kBlockSide;
     const int j0 = (y * q - grid_.y0) / kBlockSide;
     const bool changes = smooths_ && smoothing_.changes(x, y);
-    if (q == 1 && !changes) {
-        const std::uint32_t k = block_index(i0, j0);
-        return k == kEmptyBlock || seen_[k] == 0 ? nullptr : &colors_[k];
-    }
     const ColorPacket& background = edges_.pipeline.shader.background();
     std::array<const ColorPacket*, kMostPointsInPixel> blocks;
     bool any = false;

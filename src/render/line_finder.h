@@ -139,6 +139,7 @@ class LineFinder {
     bool can_take_shades() const;
     void trace_lattice(const Tile& tile);
     void lay_blocks();
+    void lay_row(int row);
     void make_room();
     bool lays_strips() const;
     std::uint32_t lay_block(const Block& block);
@@ -146,7 +147,7 @@ class LineFinder {
     void fill_grid(std::size_t block);
     template <class T>
     void copy_to_grid(std::size_t block, const T* from, T* plane) const;
-    void name_samples(std::size_t block);
+    void name_samples(std::size_t first, std::size_t count);
     SampleBlocks sample_blocks();
     std::uint32_t cut_strip(std::uint32_t strip, int first, bool down);
     void put_ends();
@@ -154,7 +155,8 @@ class LineFinder {
     void keep_for_ridges(const Tile& tile);
     void shade(std::size_t first, std::size_t count);
     void put_pixels(const Tile& tile);
-    const ColorPacket* pixel_block(int x, int y);
+    void gather_row(int x0, int x1, int y);
+    const ColorPacket* mixed_block(int x, int y);
     void keep_fringe(const Tile& tile);
     void put_aovs(Block block);
     void find_lines();

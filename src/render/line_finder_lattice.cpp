@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 
 #include "base/multiversion.h"
 
@@ -90,39 +91,13 @@ void LineFinder::lay_blocks() {
     };
     columns_in_blocks_ = in_blocks(grid_.width);
     rows_in_blocks_ = in_blocks(grid_.height);
-    blocks_across_ = (columns_in_blocks_ + kBlockSide - 1) / kBlockSide;
-    block_at_.clear();
+    const auto blocks_for = [](int points) { return (points + kBlockSide - 1) / kBlockSide; };
+    blocks_across_ = blocks_for(columns_in_blocks_);
+    const int down = blocks_for(rows_in_blocks_);
+    block_at_.assign(static_cast<std::size_t>(blocks_across_) * static_cast<std::size_t>(down),
+                     kEmptyBlock);
     blocks_.clear();
-    // Of points that are shaded with an eye to their neighbours, all tiles must see the same ones.
-    const bool whole = edges_.pipeline.shader.compares_neighbours();
-    for (int j = 0; j < rows_in_blocks_; j += kBlockSide) {
-        // Most rows without anything are told by one question.
-        const ScreenBox first = screen_box({grid_.x0, grid_.y0 + j}, grid_.spacing);
-        const ScreenBox last =
-            screen_box({grid_.x0 + columns_in_blocks_ - 1, grid_.y0 + j}, grid_.spacing);
-        if (!sampler_.reaches({first.left, first.top, last.right, first.bottom})) {
-            block_at_.resize(block_at_.size() + static_cast<std::size_t>(blocks_across_),
-                             kEmptyBlock);
-            continue;
-        }
-        const float side = kBlockSide * grid_.spacing;
-        std::uint64_t reached = 0;
-        for (int k = 0; k < blocks_across_; ++k, reached >>= 1U) {
-            const Block block{grid_.x0 + k * kBlockSide,
-                              grid_.y0 + j,
-                              std::min(kBlockSide, columns_in_blocks_ - k * kBlockSide),
-                              std::min(kBlockSide, rows_in_blocks_ - j),
-                              kBlockSide,
-                              whole};
-            if (k % 64 == 0) {
-                reached = sampler_.reached(screen_box(block, grid_.spacing), side,
-                                           std::min(blocks_across_ - k, 64));
-            }
-            block_at_.push_back((reached & 1U) != 0 ? static_cast<std::uint32_t>(blocks_.size())
-                                                    : kEmptyBlock);
-            if ((reached & 1U) != 0) blocks_.push_back(block);
-        }
-    }
+    for (int row = 0; row < down; ++row) lay_row(row);
     strips_down_.clear();
     strips_across_.clear();
     for (int j = 0; columns_in_blocks_ < grid_.width && j < grid_.height; j += kLanes) {
@@ -132,6 +107,35 @@ void LineFinder::lay_blocks() {
     for (int i = 0; rows_in_blocks_ < grid_.height && i < columns_in_blocks_; i += kLanes) {
         strips_across_.push_back(lay_block({grid_.x0 + i, grid_.y0 + rows_in_blocks_,
                                             std::min(kLanes, columns_in_blocks_ - i), 1, kLanes}));
+    }
+}
+
+/// Those of a row of blocks that may see anything.
+void LineFinder::lay_row(int row) {
+    const int y = grid_.y0 + row * kBlockSide;
+    // Most rows without anything are told by one question.
+    const ScreenBox first = screen_box({grid_.x0, y}, grid_.spacing);
+    const ScreenBox last = screen_box({grid_.x0 + columns_in_blocks_ - 1, y}, grid_.spacing);
+    if (!sampler_.reaches({first.left, first.top, last.right, first.bottom})) return;
+    // Of points that are shaded with an eye to their neighbours, all tiles must see the same ones.
+    const bool whole = edges_.pipeline.shader.compares_neighbours();
+    constexpr int kAtOnce = 64;
+    for (int k = 0; k < blocks_across_; k += kAtOnce) {
+        const ScreenBox box = screen_box({grid_.x0 + k * kBlockSide, y}, grid_.spacing);
+        std::uint64_t reached = sampler_.reached(box, kBlockSide * grid_.spacing,
+                                                 std::min(blocks_across_ - k, kAtOnce));
+        for (; reached != 0; reached &= reached - 1) {
+            const int column = k + std::countr_zero(reached);
+            block_at_[static_cast<std::size_t>(row * blocks_across_ + column)] =
+                static_cast<std::uint32_t>(blocks_.size());
+            // Field by field: to copy at once what was stored in pieces takes a wait.
+            Block& block = blocks_.emplace_back();
+            block.x = grid_.x0 + column * kBlockSide;
+            block.y = y;
+            block.columns = std::min(kBlockSide, columns_in_blocks_ - column * kBlockSide);
+            block.rows = std::min(kBlockSide, rows_in_blocks_ - row * kBlockSide);
+            block.whole = whole;
+        }
     }
 }
 
@@ -158,8 +162,8 @@ void LineFinder::take(std::size_t first, std::size_t count) {
         sampler_.take_hits(first, hits);
         for (const HitPacket& packet : hits) edges_.pipeline.shader.prefetch(packet);
     }
+    if (!fills_grid_) name_samples(first, count);
     for (std::size_t k = first; k < first + count; ++k) {
-        if (!fills_grid_) name_samples(k);
         if (std::ranges::all_of(hits_[k].object, [](auto object) { return object == kNoObject; })) {
             continue;  // the grid is background so far
         }
@@ -266,10 +270,12 @@ void LineFinder::copy_to_grid(std::size_t block, const T* from, T* plane) const 
     }
 }
 
-/// IDs and surfaces of a block's samples, for where the grid is not filled.
-void LineFinder::name_samples(std::size_t block) {
-    edges_.pipeline.ids.resolve(hits_[block], ids_[block]);
-    edges_.surfaces.number(hits_[block], surfaces_[block]);
+/// IDs and surfaces of samples, for where the grid is not filled.
+void LineFinder::name_samples(std::size_t first, std::size_t count) {
+    edges_.pipeline.ids.resolve(std::span(hits_).subspan(first, count), &ids_[first]);
+    for (std::size_t k = first; k < first + count; ++k) {
+        edges_.surfaces.number(hits_[k], surfaces_[k]);
+    }
 }
 
 /// The samples as they were traced, and what strips add to them.

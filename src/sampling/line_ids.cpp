@@ -27,11 +27,14 @@ const Groups* groups(const Object& object, IdLevel level) {
 
 /// All lanes hit one object, or nothing.
 INKTRACE_MULTIVERSION
-void resolve_one_object(const HitPacket& hits, GeometryId first, std::uint32_t stride,
-                        Lanes<GeometryId>& ids) {
-    for (int i = 0; i < kLanes; ++i) {
-        const GeometryId id = first + stride * hits.primitive[i];
-        ids[i] = hits.object[i] == kNoObject ? kBackground : id;
+void resolve_one_object(std::span<const HitPacket> hits, GeometryId first, std::uint32_t stride,
+                        Lanes<GeometryId>* __restrict ids) {
+    for (const HitPacket& packet : hits) {
+        for (int i = 0; i < kLanes; ++i) {
+            const GeometryId id = first + stride * packet.primitive[i];
+            (*ids)[i] = packet.object[i] == kNoObject ? kBackground : id;
+        }
+        ++ids;
     }
 }
 
@@ -82,12 +85,16 @@ void LineIds::add(const Object& object, IdLevel level, GeometryId& next) {
     }
 }
 
-void LineIds::resolve(const HitPacket& hits, Lanes<GeometryId>& ids) const {
+void LineIds::resolve(std::span<const HitPacket> hits, Lanes<GeometryId>* ids) const {
     if (objects_.size() == 1 && objects_[0].groups == nullptr) {
-        resolve_one_object(hits, objects_[0].first, objects_[0].stride, ids);
-        return;
+        return resolve_one_object(hits, objects_[0].first, objects_[0].stride, ids);
     }
-    for (int i = 0; i < kLanes; ++i) ids[i] = resolve(hits.object[i], hits.primitive[i]);
+    for (const HitPacket& packet : hits) {
+        for (int i = 0; i < kLanes; ++i) {
+            (*ids)[i] = resolve(packet.object[i], packet.primitive[i]);
+        }
+        ++ids;
+    }
 }
 
 GeometryId LineIds::resolve(std::uint32_t object, std::uint32_t primitive) const {

@@ -64,14 +64,19 @@ constexpr ScreenBox kEmptyBox{kInfinity, kInfinity, -kInfinity, -kInfinity};
 
 /// The screen that blocks of a lattice cover.
 ScreenBox bounds(std::span<const Block> blocks, float spacing) {
-    ScreenBox box = kEmptyBox;
+    if (blocks.empty()) return kEmptyBox;
+    int left = blocks.front().x;
+    int top = blocks.front().y;
+    int right = left;
+    int bottom = top;
     for (const Block& block : blocks) {
-        extend(box, {static_cast<float>(block.x), static_cast<float>(block.y)});
-        const int columns = block.whole ? kBlockSide : block.columns;
-        const int rows = block.whole ? kBlockSide : block.rows;
-        extend(box, {static_cast<float>(block.x + columns), static_cast<float>(block.y + rows)});
+        left = std::min(left, block.x);
+        top = std::min(top, block.y);
+        right = std::max(right, block.x + (block.whole ? kBlockSide : block.columns));
+        bottom = std::max(bottom, block.y + (block.whole ? kBlockSide : block.rows));
     }
-    return {box.left * spacing, box.top * spacing, box.right * spacing, box.bottom * spacing};
+    const auto at = [&](int point) { return static_cast<float>(point) * spacing; };
+    return {at(left), at(top), at(right), at(bottom)};
 }
 
 ScreenBox bounds(std::span<const Vec2f> points) {
