@@ -6,7 +6,9 @@
 #include <vector>
 
 #include "accel/tracer.h"
+#include "lines/coverage.h"
 #include "render/nearest_edges.h"
+#include "render/tiling_lines.h"
 
 namespace ink::test {
 namespace {
@@ -124,6 +126,38 @@ TEST(FindNearest, IsTheLeastDistanceToTheEdgesOfThePixelsOwnFace) {
             ASSERT_NEAR(std::hypot(vx[i], vy[i]), least, 1e-3);
             const ScreenEdge& edge = edges.at(static_cast<std::size_t>(nearest.t[i]));
             ASSERT_NEAR(distance_to(edge, x, y), least, 1e-3);
+        }
+    }
+}
+
+TEST(CoverTiling, IsTheAreaUnderABandAlongTheNearestLine) {
+    std::mt19937 random(5);
+    std::uniform_real_distribution<float> number(-1.0F, 1.0F);
+    std::uniform_real_distribution<float> place(-3.0F, 3.0F);
+    for (std::uint32_t n = 0; n < kTries; ++n) {
+        TilingSpot spot{{number(random), number(random)},
+                        {number(random), number(random)},
+                        {number(random), number(random)},
+                        1.0F,
+                        n % 8};                   // with any sides left out
+        if (n % 16 == 0) spot.dx = spot.dy = {};  // no line is anywhere near
+        Lanes<float> x;
+        Lanes<float> y;
+        for (int i = 0; i < kLanes; ++i) {
+            x[i] = place(random);
+            y[i] = place(random);
+        }
+        const TilingLines lines = lines_about(spot, 4.0F);
+        const float half = std::abs(number(random));
+        NearestEdges nearest;
+        Lanes<float> inks;
+        find_nearest(lines, x, y, nearest);
+        cover(lines, x, y, half, inks);
+        for (int i = 0; i < kLanes; ++i) {
+            const bool far = nearest.distance[i] > 1e6F;
+            const float area =
+                far ? 0.0F : band_coverage(nearest.distance[i], half, nearest.nx[i], nearest.ny[i]);
+            EXPECT_NEAR(inks[i], area, 1e-5F);
         }
     }
 }

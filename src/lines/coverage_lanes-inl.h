@@ -46,6 +46,10 @@ class SquareCoverage {
           slope_(set(shape.slope[lane])),
           corner_(set(shape.corner[lane])) {}
 
+    /// Those of a shape, which may differ from lane to lane.
+    HWY_INLINE SquareCoverage(Number reach, Number flat, Number slope, Number corner)
+        : reach_(reach), flat_(flat), slope_(slope), corner_(corner) {}
+
     HWY_INLINE SquareCoverage(Number nx, Number ny) {
         const Number wide = hn::Max(hn::Abs(nx), hn::Abs(ny));
         const Number narrow = hn::Min(hn::Abs(nx), hn::Abs(ny));

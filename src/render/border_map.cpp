@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/multiversion.h"
+#include "lines/ink_kernels.h"
 
 namespace ink {
 
@@ -45,6 +46,11 @@ void BorderMap::put(int x, int y, const BorderPacket& borders, const Lanes<float
     if (!encode(borders, reach_, codes_[k])) return;
     seen_[k] = 1;
     if (!depths_.empty()) depths_[k] = t;
+}
+
+bool BorderMap::ink(int x, int y, FaceBand band, const Lanes<float>& others,
+                    Lanes<float>& alpha) const {
+    return ink_borders(codes(x, y), reach_, band.half, band.opacity, others, alpha);
 }
 
 }  // namespace ink

@@ -7,6 +7,7 @@
 #include "base/image.h"
 #include "base/lanes.h"
 #include "lines/border_code.h"
+#include "render/face_band.h"
 
 namespace ink {
 
@@ -30,6 +31,9 @@ class BorderMap {
     /// Says that a block will be asked for soon.
     void prefetch(int x, int y) const { __builtin_prefetch(&codes_[block(x, y)]); }
     float reach() const { return reach_; }
+    /// What the lines along the borders that 4 x 4 pixels see leave on them, where all lines have
+    /// one ink: that of others where it is more. False if none is within reach of any of them.
+    bool ink(int x, int y, FaceBand band, const Lanes<float>& others, Lanes<float>& alpha) const;
 
   private:
     std::size_t block(int x, int y) const {

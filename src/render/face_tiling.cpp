@@ -13,6 +13,8 @@ namespace ink {
 
 namespace {
 
+constexpr std::uint32_t kAllPixels = 0xFFFFU;  ///< of a block
+
 /// Whether an edge of a triangle lies within a polygon, or has a line of another type.
 bool has_no_line(const Mesh& mesh, std::uint32_t triangle, std::size_t edge) {
     if (!mesh.edge_flags.empty() && mesh.is_boundary(triangle, edge)) return true;
@@ -65,13 +67,13 @@ FaceTiling::FaceTiling(const Scene& scene, const Projection& projection,
 void FaceTiling::put(int x, int y, const HitPacket& hits, const SidesPacket* sides) {
     if (x < 0 || y < 0 || x >= small_.width || y >= small_.height) return;
     const std::size_t k = block(x, y);
-    Spot* const spots = spots_.data() + k * kLanes;
+    TilingSpot* const spots = spots_.data() + k * kLanes;
     bool any = false;
     for (int i = 0; i < kLanes; ++i) {
-        Spot& spot = spots[i];
+        TilingSpot& spot = spots[i];
         const std::uint32_t object = hits.object[i];
         const Mesh* const mesh = object == kNoObject ? nullptr : meshes_[object];
-        spot.object = kNone;
+        spot.object = TilingSpot::kNone;
         if (mesh == nullptr) continue;
         any = true;
         const std::uint32_t triangle = hits.primitive[i];
@@ -121,8 +123,8 @@ TriangleSides FaceTiling::project_sides(const Mesh& mesh, std::uint32_t triangle
 /// By Cauchy's way of counting: half of the sides over the area. Of polygons, too: the picture in
 /// full counts triangles (LineFinder::add_face_density).
 float FaceTiling::length_at(int x, int y, int lane) const {
-    const Spot& spot = spots_[block(x, y) * kLanes + static_cast<std::size_t>(lane)];
-    if (spot.object == kNone) return 0.0F;
+    const TilingSpot& spot = spots_[block(x, y) * kLanes + static_cast<std::size_t>(lane)];
+    if (spot.object == TilingSpot::kNone) return 0.0F;
     float length = 0.0F;
     for (unsigned k = 0; k < 3; ++k) {
         const float dx = k < 2 ? spot.dx[k] : -spot.dx[0] - spot.dx[1];
@@ -139,8 +141,12 @@ bool FaceTiling::sees(int x, int y) const {
     const auto& columns = columns_[static_cast<std::size_t>(x / kBlockSide)].nearest;
     const auto& rows = rows_[static_cast<std::size_t>(y / kBlockSide)].nearest;
     const auto seen = [&](int column, int row) { return seen_[block(column, row)] != 0; };
-    return seen(columns.front(), rows.front()) || seen(columns.back(), rows.front()) ||
-           seen(columns.front(), rows.back()) || seen(columns.back(), rows.back());
+    if (seen(columns.front(), rows.front())) return true;
+    const bool one_column = columns.front() == columns.back();
+    const bool one_row = rows.front() == rows.back();
+    return (!one_column && seen(columns.back(), rows.front())) ||
+           (!one_row && seen(columns.front(), rows.back())) ||
+           (!one_column && !one_row && seen(columns.back(), rows.back()));
 }
 
 void FaceTiling::look_at(int x, int y, int column, int row) {
@@ -153,23 +159,6 @@ void FaceTiling::look_at(int x, int y, int column, int row) {
     aside_[(by * columns_.size() + bx) * kLanes + lane] = static_cast<std::uint8_t>(code);
 }
 
-TilingLines FaceTiling::lines_of(const Spot& spot) const {
-    TilingLines lines;
-    const float shrink = 1.0F / factor_;
-    for (unsigned k = 0; k < 3; ++k) {
-        const bool third = k == 2;
-        const float dx = third ? -spot.dx[0] - spot.dx[1] : spot.dx[k];
-        const float dy = third ? -spot.dy[0] - spot.dy[1] : spot.dy[k];
-        const float inside = third ? 1.0F - spot.inside[0] - spot.inside[1] : spot.inside[k];
-        const float steep = std::sqrt(dx * dx + dy * dy);
-        if ((spot.object >> k & 1U) != 0) continue;
-        const float height = 1.0F / std::max(steep, 1e-20F);
-        lines.families[lines.count++] = {inside,      dx * shrink, dy * shrink,
-                                         dx * height, dy * height, height * factor_};
-    }
-    return lines;
-}
-
 /// Whether all pixels of a block lie about one point of the small picture.
 bool FaceTiling::is_plain(const std::uint8_t* aside, const Places& columns,
                           const Places& rows) const {
@@ -180,37 +169,28 @@ bool FaceTiling::is_plain(const std::uint8_t* aside, const Places& columns,
            rows.nearest.front() == rows.nearest.back();
 }
 
-bool FaceTiling::measure(int x, int y, float reach, NearestEdges& nearest) const {
+const TilingSpot* FaceTiling::spot_at(int column, int row) const {
+    if (seen_[block(column, row)] == 0) return nullptr;
+    const TilingSpot& spot =
+        spots_[block(column, row) * kLanes +
+               static_cast<std::size_t>(row % kBlockSide * kBlockSide + column % kBlockSide)];
+    return spot.object == TilingSpot::kNone ? nullptr : &spot;
+}
+
+/// Calls `visit(spot, off x, off y, own)` for each point that pixels of the block at (x, y) lie
+/// about and that sees a mesh: from it to the pixels, and a bit for each that lies about it.
+template <class Visit>
+void FaceTiling::for_each_spot(int x, int y, const Visit& visit) const {
     const auto bx = static_cast<std::size_t>(x / kBlockSide);
     const auto by = static_cast<std::size_t>(y / kBlockSide);
     const Places& columns = columns_[bx];
     const Places& rows = rows_[by];
     const std::uint8_t* const aside = aside_.data() + (by * columns_.size() + bx) * kLanes;
-    if (!is_plain(aside, columns, rows)) {
-        measure_points(aside, columns, rows, nearest);
-    } else {
-        const int column = columns.nearest.front();
-        const int row = rows.nearest.front();
-        if (seen_[block(column, row)] == 0) return false;
-        const Spot& one = spot(column, row);
-        if (one.object == kNone) return false;
-        find_nearest(lines_of(one), columns.off, rows.off, nearest);
-        nearest.t.fill(one.t);
-        nearest.triangle.fill(one.object >> 3U);
+    if (is_plain(aside, columns, rows)) {
+        const TilingSpot* const spot = spot_at(columns.nearest.front(), rows.nearest.front());
+        if (spot != nullptr) visit(*spot, columns.off, rows.off, kAllPixels);
+        return;
     }
-    bool any = false;
-    for (int i = 0; i < kLanes; ++i) any |= nearest.distance[i] < reach;
-    return any;
-}
-
-/// Point by point of those that the pixels of a block lie about.
-void FaceTiling::measure_points(const std::uint8_t* aside, const Places& columns,
-                                const Places& rows, NearestEdges& nearest) const {
-    nearest.distance.fill(kInfinity);
-    nearest.nx.fill(1.0F);
-    nearest.ny.fill(0.0F);
-    nearest.t.fill(0.0F);
-    nearest.triangle.fill(0);
     Lanes<std::int32_t> column;
     Lanes<std::int32_t> row;
     Lanes<float> off_x = columns.off;
@@ -226,30 +206,64 @@ void FaceTiling::measure_points(const std::uint8_t* aside, const Places& columns
         off_x[i] -= static_cast<float>(right) * factor_;
         off_y[i] -= static_cast<float>(below) * factor_;
     }
-    std::uint32_t left = 0xFFFFU;
-    while (left != 0) {
+    for (std::uint32_t left = kAllPixels; left != 0;) {
         const int first = std::countr_zero(left);
         std::uint32_t own = 0;
         for (int i = first; i < kLanes; ++i) {
             own |= column[i] == column[first] && row[i] == row[first] ? 1U << i : 0U;
         }
         left &= ~own;
-        const int at = std::clamp(column[first], 0, small_.width - 1);
-        const int down = std::clamp(row[first], 0, small_.height - 1);
-        if (seen_[block(at, down)] == 0) continue;
-        const Spot& one = spot(at, down);
-        if (one.object == kNone) continue;
-        NearestEdges found;
-        find_nearest(lines_of(one), off_x, off_y, found);
-        for (; own != 0; own &= own - 1) {
-            const int i = std::countr_zero(own);
-            nearest.distance[i] = found.distance[i];
-            nearest.nx[i] = found.nx[i];
-            nearest.ny[i] = found.ny[i];
-            nearest.t[i] = one.t;
-            nearest.triangle[i] = one.object >> 3U;
-        }
+        const TilingSpot* const spot = spot_at(std::clamp(column[first], 0, small_.width - 1),
+                                               std::clamp(row[first], 0, small_.height - 1));
+        if (spot != nullptr) visit(*spot, off_x, off_y, own);
     }
+}
+
+bool FaceTiling::measure(int x, int y, float reach, NearestEdges& nearest) const {
+    nearest.distance.fill(kInfinity);
+    nearest.nx.fill(1.0F);
+    nearest.ny.fill(0.0F);
+    nearest.t.fill(0.0F);
+    nearest.triangle.fill(0);
+    for_each_spot(x, y,
+                  [&](const TilingSpot& spot, const Lanes<float>& off_x, const Lanes<float>& off_y,
+                      std::uint32_t own) {
+                      NearestEdges found;
+                      find_nearest(lines_about(spot, factor_), off_x, off_y, found);
+                      for (; own != 0; own &= own - 1) {
+                          const int i = std::countr_zero(own);
+                          nearest.distance[i] = found.distance[i];
+                          nearest.nx[i] = found.nx[i];
+                          nearest.ny[i] = found.ny[i];
+                          nearest.t[i] = spot.t;
+                          nearest.triangle[i] = spot.object >> 3U;
+                      }
+                  });
+    return std::ranges::any_of(nearest.distance, [&](float d) { return d < reach; });
+}
+
+bool FaceTiling::ink(int x, int y, FaceBand band, const Lanes<float>& others,
+                     Lanes<float>& alpha) const {
+    bool any = false;
+    alpha = others;
+    for_each_spot(x, y,
+                  [&](const TilingSpot& spot, const Lanes<float>& off_x, const Lanes<float>& off_y,
+                      std::uint32_t own) {
+                      any = true;
+                      Lanes<float> found;
+                      cover(lines_about(spot, factor_), off_x, off_y, band.half, found);
+                      if (own == kAllPixels) {
+                          for (int i = 0; i < kLanes; ++i) {
+                              alpha[i] = std::max(alpha[i], found[i] * band.opacity);
+                          }
+                          return;
+                      }
+                      for (; own != 0; own &= own - 1) {
+                          const int i = std::countr_zero(own);
+                          alpha[i] = std::max(alpha[i], found[i] * band.opacity);
+                      }
+                  });
+    return any;
 }
 
 }  // namespace ink

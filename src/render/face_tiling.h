@@ -9,6 +9,7 @@
 #include "base/image.h"
 #include "base/lanes.h"
 #include "render/enlarge.h"
+#include "render/face_band.h"
 #include "render/nearest_edges.h"
 #include "render/tiling_lines.h"
 #include "scene/scene.h"
@@ -41,17 +42,12 @@ class FaceTiling {
     bool sees(int x, int y) const;
     /// Their nearest lines; instead of triangles it names objects. False if none is within reach.
     bool measure(int x, int y, float reach, NearestEdges& nearest) const;
+    /// The same where all lines have one ink, see BorderMap::ink.
+    bool ink(int x, int y, FaceBand band, const Lanes<float>& others, Lanes<float>& alpha) const;
+    /// Nothing: neighbours in a row are neighbours in memory.
+    void prefetch(int /*x*/, int /*y*/) const {}
 
   private:
-    static constexpr std::uint32_t kNone = 0xFFFFFFFFU;
-
-    /// A triangle and how a point lies in it: of two of its sides as in TriangleSides, those of the
-    /// third follow.
-    struct Spot {
-        std::array<float, 2> inside, dx, dy;
-        float t;
-        std::uint32_t object;  ///< and in its lowest three bits which sides have no line; or kNone
-    };
     /// Of four columns or rows of the large picture, the nearest point of the small one of each,
     /// and from it to the pixel's centre, pixels.
     struct Places {
@@ -59,19 +55,15 @@ class FaceTiling {
         Lanes<float> off;  ///< of each pixel of a block
     };
 
-    const Spot& spot(int x, int y) const {
-        return spots_[block(x, y) * kLanes +
-                      static_cast<std::size_t>(y % kBlockSide * kBlockSide + x % kBlockSide)];
-    }
     std::size_t block(int x, int y) const {
         return static_cast<std::size_t>(y / kBlockSide) * static_cast<std::size_t>(blocks_across_) +
                static_cast<std::size_t>(x / kBlockSide);
     }
     TriangleSides project_sides(const Mesh& mesh, std::uint32_t triangle, Vec2f point) const;
     bool is_plain(const std::uint8_t* aside, const Places& columns, const Places& rows) const;
-    void measure_points(const std::uint8_t* aside, const Places& columns, const Places& rows,
-                        NearestEdges& nearest) const;
-    TilingLines lines_of(const Spot& spot) const;
+    const TilingSpot* spot_at(int column, int row) const;
+    template <class Visit>
+    void for_each_spot(int x, int y, const Visit& visit) const;
 
     std::vector<const Mesh*> meshes_;  ///< of the scene's objects; null for other shapes
     Projection projection_;
@@ -80,7 +72,7 @@ class FaceTiling {
     int blocks_across_;
     std::vector<Places> columns_, rows_;  ///< by blocks of the large picture
     std::vector<std::uint8_t> seen_;      ///< a block of the small picture: it sees a mesh
-    std::vector<Spot, UninitializedAllocator<Spot>> spots_;
+    std::vector<TilingSpot, UninitializedAllocator<TilingSpot>> spots_;
     /// By blocks of the large picture, a pixel: 0, or where the point that it sees the surface of
     /// lies from the nearest one, see look_at.
     std::vector<std::uint8_t> aside_;

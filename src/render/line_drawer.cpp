@@ -33,15 +33,20 @@ void LineDrawer::draw(const Tile& tile, const std::vector<TileLines>& found) {
             face_edges_->enter(tile);
             ink_faces(tile, *face_edges_);
         }
-        if (tiling_ != nullptr) ink_faces(tile, *tiling_);
-        if (borders_ != nullptr && edges_.ink.has_several_inks()) ink_borders(tile);
+        if (tiling_ != nullptr && !one_pass_) ink_faces(tile, *tiling_);
+        if (borders_ != nullptr && !one_pass_) ink_borders(tile);
         ink_.finish();
     }
-    if (borders_ != nullptr && !edges_.ink.has_several_inks()) {
-        write_with_borders(tile);
-    } else {
-        write(tile);
-    }
+    if (!one_pass_) return write(tile);
+    if (borders_ != nullptr) write_with_faces(tile, *borders_);
+    if (tiling_ != nullptr) write_with_faces(tile, *tiling_);
+}
+
+/// Whether lines between faces are inked and laid on the film in one pass.
+bool LineDrawer::goes_in_one_pass() const {
+    if (borders_ == nullptr && tiling_ == nullptr) return false;
+    return !edges_.ink.has_several_inks() && !edges_.styles_by_object && !edges_.cues_depth() &&
+           edges_.ink.profile.kind == Metric::Kind::solid;
 }
 
 float LineDrawer::width_scale(const InkStroke& stroke) const {
@@ -94,27 +99,37 @@ float LineDrawer::cue_depth(int x, int y, const NearestEdges& nearest,
     return 1.0F - static_cast<float>(settings.line_taper) * least;
 }
 
-/// Calls `draw(x, y, nearest edges, strength, style, width)` for each block of the tile that has
-/// lines between faces, once a style.
-template <class Faces, class Draw>
-void LineDrawer::for_each_face_block(const Tile& tile, Faces& faces, Draw draw) {
+/// Finds the blocks of the tile that see faces, and how wide lines are there.
+template <class Faces>
+void LineDrawer::gather_blocks(const Tile& tile, const Faces& faces) {
     middles_.clear();
+    sees_.clear();
     for (int y = tile.y0; y < tile.y1; y += kBlockSide) {
         for (int x = tile.x0; x < tile.x1; x += kBlockSide) {
-            if (!faces.sees(x, y)) continue;
+            sees_.push_back(faces.sees(x, y));
+            if (!sees_.back()) continue;
             middles_.push_back({static_cast<float>(x) + 0.5F * kBlockSide,
                                 static_cast<float>(y) + 0.5F * kBlockSide});
         }
     }
     scales_.resize(middles_.size());
     thinning_.scales_at(middles_, scales_);
+}
+
+/// Calls `draw(x, y, nearest edges, strength, style, width)` for each block of the tile that has
+/// lines between faces, once a style.
+template <class Faces, class Draw>
+void LineDrawer::for_each_face_block(const Tile& tile, Faces& faces, Draw draw) {
+    gather_blocks(tile, faces);
     NearestEdges nearest;
     const float* scale_of_block = scales_.data();
+    auto sees = sees_.begin();
+    const float reach = edges_.ink.reach();
     for (int y = tile.y0; y < tile.y1; y += kBlockSide) {
         for (int x = tile.x0; x < tile.x1; x += kBlockSide) {
-            if (!faces.sees(x, y)) continue;
+            if (!*sees++) continue;
             const float thinned = *scale_of_block++;
-            if (!faces.measure(x, y, edges_.ink.reach(), nearest)) continue;
+            if (!faces.measure(x, y, reach, nearest)) continue;
             Lanes<float> strength;
             const float scale = cue_depth(x, y, nearest, strength) * thinned;
             const auto draw_style = [&](std::uint32_t object, const NearestEdges& edges) {
@@ -153,22 +168,8 @@ void LineDrawer::ink_faces(const Tile& tile, Faces& faces) {
                         });
 }
 
-/// Finds the blocks of the tile that see borders, and how wide lines are there.
-void LineDrawer::gather_borders(const Tile& tile) {
-    middles_.clear();
-    for (int y = tile.y0; y < tile.y1; y += kBlockSide) {
-        for (int x = tile.x0; x < tile.x1; x += kBlockSide) {
-            if (!borders_->sees(x, y)) continue;
-            middles_.push_back({static_cast<float>(x) + 0.5F * kBlockSide,
-                                static_cast<float>(y) + 0.5F * kBlockSide});
-        }
-    }
-    scales_.resize(middles_.size());
-    thinning_.scales_at(middles_, scales_);
-}
-
 void LineDrawer::ink_borders(const Tile& tile) {
-    gather_borders(tile);
+    gather_blocks(tile, *borders_);
     const std::size_t style = edges_.style_of(LineType::mesh, 0);
     const float width = edges_.ink.styles[style].width_px;
     for (std::size_t k = 0; k < middles_.size(); ++k) {
@@ -298,36 +299,39 @@ void LineDrawer::write(const Tile& tile) {
 }
 
 /// Where all lines have one ink, that of lines between faces needs no layer to be gathered in: it
-/// goes from what is kept of a block's borders straight to its pixels.
-void LineDrawer::write_with_borders(const Tile& tile) {
+/// goes from what is kept of a block's faces straight to its pixels.
+template <class Faces>
+void LineDrawer::write_with_faces(const Tile& tile, const Faces& faces) {
     const Timer phase(stats_.blend_ms);
-    gather_borders(tile);
+    gather_blocks(tile, faces);
     const LineStyle& style = edges_.ink.styles[edges_.style_of(LineType::mesh, 0)];
     const Lanes<float> no_ink{};
-    std::size_t seen = 0;
+    const float* scale_of_block = scales_.data();
     std::size_t k = 0;
     for (int y = tile.y0; y < tile.y1; y += kBlockSide) {
-        prefetch_row(tile, y + kBlockSide);
+        prefetch_row(tile, y + kBlockSide, faces);
         for (int x = tile.x0; x < tile.x1; x += kBlockSide, ++k) {
             const bool stroked = ink_.touched(k);
             const Lanes<float>& strokes = stroked ? ink_.alpha_of_block(k) : no_ink;
             Lanes<float> alpha;
-            if (borders_->sees(x, y) && ink::ink_borders(borders_->codes(x, y), borders_->reach(),
-                                                         0.5F * (style.width_px * scales_[seen++]),
-                                                         style.opacity, strokes, alpha)) {
-                lay(x, y, {alpha, style.color, {}});
-            } else if (stroked) {
-                lay(x, y, {strokes, style.color, {}});
+            if (sees_[k]) {
+                const FaceBand band{0.5F * (style.width_px * *scale_of_block++), style.opacity};
+                if (faces.ink(x, y, band, strokes, alpha)) {
+                    lay(x, y, {alpha, style.color, {}});
+                    continue;
+                }
             }
+            if (stroked) lay(x, y, {strokes, style.color, {}});
         }
     }
 }
 
 /// Says that a row of blocks of the tile will be written soon.
-void LineDrawer::prefetch_row(const Tile& tile, int y) const {
+template <class Faces>
+void LineDrawer::prefetch_row(const Tile& tile, int y, const Faces& faces) const {
     constexpr int kPixels = 64 / sizeof(std::uint32_t);  // to a cache line
     if (y >= tile.y1) return;
-    for (int x = tile.x0; x < tile.x1; x += kBlockSide) borders_->prefetch(x, y);
+    for (int x = tile.x0; x < tile.x1; x += kBlockSide) faces.prefetch(x, y);
     Film& film = edges_.pipeline.film;
     if (film.display().pixels.empty()) return;
     for (int row = y; row < std::min(y + kBlockSide, tile.y1); ++row) {

@@ -24,7 +24,12 @@ class LineDrawer {
     /// from; null if there are none.
     LineDrawer(const Edges& edges, const LineThinning& thinning, const FaceMap* faces,
                const ScreenVertices* vertices, const BorderMap* borders, const FaceTiling* tiling)
-        : edges_(edges), thinning_(thinning), ink_(edges.ink), borders_(borders), tiling_(tiling) {
+        : edges_(edges),
+          thinning_(thinning),
+          ink_(edges.ink),
+          borders_(borders),
+          tiling_(tiling),
+          one_pass_(goes_in_one_pass()) {
         if (faces == nullptr) return;
         face_edges_.emplace(edges.pipeline.camera.projection(), *faces, *vertices);
         faces_ = faces;
@@ -39,8 +44,11 @@ class LineDrawer {
     void for_each_near_tile(const Tile& tile, const std::vector<TileLines>& found, Visit visit);
     void gather(const Tile& tile, const std::vector<TileLines>& found);
     void write(const Tile& tile);
-    void write_with_borders(const Tile& tile);
-    void prefetch_row(const Tile& tile, int y) const;
+    bool goes_in_one_pass() const;
+    template <class Faces>
+    void write_with_faces(const Tile& tile, const Faces& faces);
+    template <class Faces>
+    void prefetch_row(const Tile& tile, int y, const Faces& faces) const;
     void lay(int x, int y, const Film::BlockInk& ink);
 
     void leave_gap(const InkStroke& stroke);
@@ -53,7 +61,8 @@ class LineDrawer {
     std::uint32_t object_of(std::uint32_t triangle) const {
         return faces_ != nullptr ? faces_->triangle(triangle).object : triangle;
     }
-    void gather_borders(const Tile& tile);
+    template <class Faces>
+    void gather_blocks(const Tile& tile, const Faces& faces);
     void ink_borders(const Tile& tile);
     void write_planes(const Tile& tile, const std::vector<TileLines>& found);
     void add_face_planes(const Tile& tile);
@@ -63,11 +72,13 @@ class LineDrawer {
     InkTile ink_;
     const BorderMap* borders_;
     const FaceTiling* tiling_;
+    bool one_pass_;  ///< lines between faces need no layers of ink
     const FaceMap* faces_ = nullptr;
     std::optional<FaceEdges> face_edges_;
     LinePlanes planes_;
     std::vector<const InkStroke*> near_;  ///< those within reach of the tile
     std::vector<Vec2f> middles_;          ///< of what is to be drawn: near strokes, or blocks
+    std::vector<std::uint8_t> sees_;      ///< a block of the tile: whether it sees faces
     std::vector<float> scales_;           ///< of their widths, where they are seen directly
     RenderStats stats_;
 };

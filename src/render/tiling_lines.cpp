@@ -1,5 +1,7 @@
 #include "render/tiling_lines.h"
 
+#include <cstddef>
+
 #include "base/vec.h"
 
 // Everything between the two namespace macros is built once for each instruction set.
@@ -8,35 +10,113 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "lines/coverage_lanes-inl.h"
+
 HWY_BEFORE_NAMESPACE();
 namespace ink::HWY_NAMESPACE {
 
-namespace hn = hwy::HWY_NAMESPACE;
+using Four = hn::FixedTag<float, 4>;
+constexpr Four kFour;
+
+/// What depends on the normals of the families alone, see SquareCoverage.
+struct FamilyShapes {
+    std::array<float, 4> reach, flat, slope, corner;
+
+    HWY_INLINE explicit FamilyShapes(const TilingLines& lines) {
+        const auto nx = hn::Abs(hn::LoadU(kFour, lines.nx.data()));
+        const auto ny = hn::Abs(hn::LoadU(kFour, lines.ny.data()));
+        const auto half = hn::Set(kFour, 0.5F);
+        const auto wide = hn::Max(nx, ny);
+        const auto narrow = hn::Min(nx, ny);
+        const auto least = hn::Set(kFour, 1e-6F);
+        hn::StoreU(hn::Mul(half, hn::Add(wide, narrow)), kFour, reach.data());
+        hn::StoreU(hn::Mul(half, hn::Sub(wide, narrow)), kFour, flat.data());
+        hn::StoreU(hn::Div(hn::Set(kFour, 1.0F), hn::Max(wide, least)), kFour, slope.data());
+        hn::StoreU(hn::Div(half, hn::Max(hn::Mul(wide, narrow), least)), kFour, corner.data());
+    }
+};
+
+/// How far sixteen points, from the i-th on, are from the nearest line. Calls `take(k, nearer)` for
+/// each family: which of them are nearer to it than to those before.
+template <class Take>
+HWY_INLINE Number for_each_family(const TilingLines& lines, const Lanes<float>& x,
+                                  const Lanes<float>& y, int i, const Take& take) {
+    const Number qx = load(x, i);
+    const Number qy = load(y, i);
+    Number least = set(kInfinity);
+    for (std::size_t k = 0; k < 3; ++k) {
+        if ((lines.without >> k & 1U) != 0) continue;
+        const Number across = hn::Add(hn::Mul(set(lines.dx[k]), qx), hn::Mul(set(lines.dy[k]), qy));
+        const Number at = hn::Add(set(lines.at[k]), across);
+        const Number distance = hn::Mul(hn::Abs(hn::Sub(at, hn::Round(at))), set(lines.apart[k]));
+        take(k, hn::Lt(distance, least));
+        least = hn::Min(distance, least);
+    }
+    return least;
+}
+
+TilingLines find_lines_about(const TilingSpot& spot, float factor) {
+    static_assert(offsetof(TilingSpot, dx) == 2 * sizeof(float));
+    static_assert(offsetof(TilingSpot, dy) == 4 * sizeof(float));
+    const auto inside_dx = hn::LoadU(kFour, spot.inside.data());
+    const auto dy_rest = hn::LoadU(kFour, spot.dy.data());
+    // What is left of one, and of nothing.
+    alignas(16) constexpr std::array kWhole{1.0F, 1.0F, 0.0F, 0.0F};
+    const auto whole = hn::Load(kFour, kWhole.data());
+    const auto third = hn::Sub(hn::Sub(whole, inside_dx), hn::Shuffle2301(inside_dx));
+    const auto third_dy = hn::Sub(hn::Neg(dy_rest), hn::Shuffle2301(dy_rest));
+    const auto inside = hn::ConcatLowerLower(kFour, third, inside_dx);
+    const auto dx = hn::ConcatUpperUpper(kFour, third, inside_dx);
+    const auto dy = hn::ConcatLowerLower(kFour, third_dy, dy_rest);
+    const auto steep = hn::Sqrt(hn::Add(hn::Mul(dx, dx), hn::Mul(dy, dy)));
+    const auto height = hn::Div(hn::Set(kFour, 1.0F), hn::Max(steep, hn::Set(kFour, 1e-20F)));
+    const auto shrink = hn::Set(kFour, 1.0F / factor);
+    TilingLines lines;
+    hn::StoreU(inside, kFour, lines.at.data());
+    hn::StoreU(hn::Mul(dx, shrink), kFour, lines.dx.data());
+    hn::StoreU(hn::Mul(dy, shrink), kFour, lines.dy.data());
+    hn::StoreU(hn::Mul(dx, height), kFour, lines.nx.data());
+    hn::StoreU(hn::Mul(dy, height), kFour, lines.ny.data());
+    hn::StoreU(hn::Mul(height, hn::Set(kFour, factor)), kFour, lines.apart.data());
+    lines.without = spot.object & 7U;
+    return lines;
+}
 
 void find_nearest_tiling(const TilingLines& lines, const Lanes<float>& x, const Lanes<float>& y,
                          NearestEdges& nearest) {
-    constexpr hn::CappedTag<float, kLanes> kFloats;
-    const auto set = [&](float value) HWY_ATTR { return hn::Set(kFloats, value); };
-    for (int i = 0; i < kLanes; i += static_cast<int>(hn::MaxLanes(kFloats))) {
-        const auto qx = hn::Load(kFloats, x.data() + i);
-        const auto qy = hn::Load(kFloats, y.data() + i);
-        auto distance = set(kInfinity);
-        auto nx = set(1.0F);
-        auto ny = hn::Zero(kFloats);
-        for (std::size_t k = 0; k < lines.count; ++k) {
-            const TilingLines::Family& family = lines.families[k];
-            const auto at = hn::Add(
-                set(family.at), hn::Add(hn::Mul(set(family.dx), qx), hn::Mul(set(family.dy), qy)));
-            const auto off = hn::Abs(hn::Sub(at, hn::Round(at)));
-            const auto away = hn::Mul(off, set(family.apart));
-            const auto nearer = hn::Lt(away, distance);
-            distance = hn::IfThenElse(nearer, away, distance);
-            nx = hn::IfThenElse(nearer, set(family.nx), nx);
-            ny = hn::IfThenElse(nearer, set(family.ny), ny);
-        }
+    for (int i = 0; i < kLanes; i += kStep) {
+        Number nx = set(1.0F);
+        Number ny = hn::Zero(kFloats);
+        const Number distance =
+            for_each_family(lines, x, y, i, [&](std::size_t k, auto nearer) HWY_ATTR {
+                nx = hn::IfThenElse(nearer, set(lines.nx[k]), nx);
+                ny = hn::IfThenElse(nearer, set(lines.ny[k]), ny);
+            });
         hn::Store(distance, kFloats, nearest.distance.data() + i);
         hn::Store(nx, kFloats, nearest.nx.data() + i);
         hn::Store(ny, kFloats, nearest.ny.data() + i);
+    }
+}
+
+void cover_tiling(const TilingLines& lines, const Lanes<float>& x, const Lanes<float>& y,
+                  float half, Lanes<float>& inks) {
+    const FamilyShapes shapes(lines);
+    for (int i = 0; i < kLanes; i += kStep) {
+        Number reach = set(0.5F);
+        Number flat = set(0.5F);
+        Number slope = set(1.0F);
+        Number corner = hn::Zero(kFloats);
+        const Number distance =
+            for_each_family(lines, x, y, i, [&](std::size_t k, auto nearer) HWY_ATTR {
+                reach = hn::IfThenElse(nearer, set(shapes.reach[k]), reach);
+                flat = hn::IfThenElse(nearer, set(shapes.flat[k]), flat);
+                slope = hn::IfThenElse(nearer, set(shapes.slope[k]), slope);
+                corner = hn::IfThenElse(nearer, set(shapes.corner[k]), corner);
+            });
+        const SquareCoverage area(reach, flat, slope, corner);
+        const Number ink =
+            hn::Sub(area(hn::Sub(set(half), distance)), area(hn::Sub(set(-half), distance)));
+        hn::Store(ink, kFloats, inks.data() + i);
     }
 }
 
@@ -47,11 +127,22 @@ HWY_AFTER_NAMESPACE();
 
 namespace ink {
 
+HWY_EXPORT(cover_tiling);
+HWY_EXPORT(find_lines_about);
 HWY_EXPORT(find_nearest_tiling);
+
+TilingLines lines_about(const TilingSpot& spot, float factor) {
+    return HWY_DYNAMIC_DISPATCH(find_lines_about)(spot, factor);
+}
 
 void find_nearest(const TilingLines& lines, const Lanes<float>& x, const Lanes<float>& y,
                   NearestEdges& nearest) {
     HWY_DYNAMIC_DISPATCH(find_nearest_tiling)(lines, x, y, nearest);
+}
+
+void cover(const TilingLines& lines, const Lanes<float>& x, const Lanes<float>& y, float half,
+           Lanes<float>& inks) {
+    HWY_DYNAMIC_DISPATCH(cover_tiling)(lines, x, y, half, inks);
 }
 
 }  // namespace ink

@@ -1,27 +1,42 @@
 #pragma once
 
 #include <array>
-#include <cstddef>
+#include <cstdint>
 
 #include "base/lanes.h"
 #include "render/nearest_edges.h"
 
 namespace ink {
 
-/// Up to three families of parallel lines on the screen: where a number that changes evenly across
-/// it is whole.
-struct TilingLines {
-    struct Family {
-        float at, dx, dy;  ///< the number at the origin, and how a pixel's step changes it
-        float nx, ny;      ///< unit, across the lines
-        float apart;       ///< from one line to the next, pixels
-    };
-    std::array<Family, 3> families;
-    std::size_t count = 0;
+/// A triangle and how a point lies in it: of two of its sides as in TriangleSides, those of the
+/// third follow.
+struct TilingSpot {
+    static constexpr std::uint32_t kNone = 0xFFFFFFFFU;
+
+    std::array<float, 2> inside, dx, dy;
+    float t;
+    std::uint32_t object;  ///< and in its lowest three bits which sides have no line; or kNone
 };
+
+/// Up to three families of parallel lines on the screen: where a number that changes evenly across
+/// it is whole. A family in each lane, and the fourth is nothing.
+struct TilingLines {
+    std::array<float, 4> at, dx, dy;  ///< the number at the origin, and how a pixel changes it
+    std::array<float, 4> nx, ny;      ///< unit, across the lines
+    std::array<float, 4> apart;       ///< from one line to the next, pixels
+    std::uint32_t without;            ///< a bit for each that is not there
+};
+
+/// The lines about a point of a picture `factor` times smaller than theirs.
+TilingLines lines_about(const TilingSpot& spot, float factor);
 
 /// From sixteen points to the nearest line: distances and unit normals.
 void find_nearest(const TilingLines& lines, const Lanes<float>& x, const Lanes<float>& y,
                   NearestEdges& nearest);
+
+/// The area of the pixels about sixteen points under bands of that half width along the nearest
+/// line.
+void cover(const TilingLines& lines, const Lanes<float>& x, const Lanes<float>& y, float half,
+           Lanes<float>& inks);
 
 }  // namespace ink
