@@ -51,6 +51,15 @@ class PacketStore {
 
     const ScreenPacket* packets() const { return packets_.data(); }
 
+    /// Makes sure that a packet has what hits need.
+    void complete(std::uint32_t place) {
+        ScreenPacket& packet = packets_[place];
+        if (packet.has_hit_numbers) return;
+        const Cluster& cluster = clusters_.clusters[owners_[place].cluster];
+        record_hits(clusters_.triangles[cluster.packet], packet);
+        packet.has_hit_numbers = true;
+    }
+
     void prefetch(std::uint32_t cluster) const {
         if (!has(cluster)) ink::prefetch(clusters_, cluster, wants_shades_);
     }

@@ -115,6 +115,19 @@ void intersect_front(const Basis& basis, const ScreenPacket* packets, std::uint3
 /// Cells that one primitive reaches into.
 struct CellRange {
     int left, right, top, bottom;
+
+    /// Of one of sixteen.
+    static CellRange of(const BoundsPacket& bounds, int lane, const FrontRaster& raster) {
+        const float scale = 1.0F / raster.side;
+        const auto cell = [&](float at, float from, int count) {
+            const float place = std::max((at - from) * scale, 0.0F);
+            return static_cast<int>(std::min(place, static_cast<float>(count - 1)));
+        };
+        return {cell(bounds.left[lane], raster.left, raster.across),
+                cell(bounds.right[lane], raster.left, raster.across),
+                cell(bounds.top[lane], raster.top, raster.down),
+                cell(bounds.bottom[lane], raster.top, raster.down)};
+    }
 };
 
 /// Those of sixteen primitives.
@@ -154,21 +167,6 @@ HWY_INLINE void for_windows(const CellRange& cells, const Visit& visit) {
     }
 }
 
-/// What the cells of a window are from its first one: right, down and in the raster's arrays.
-struct WindowCells {
-    Lanes<float> right, down;
-    Lanes<std::uint32_t> offset;
-
-    HWY_INLINE explicit WindowCells(const FrontRaster& raster) {
-        for (int i = 0; i < kLanes; ++i) {
-            right[i] = static_cast<float>(i % kBlockSide) * raster.side;
-            down[i] = static_cast<float>(i / kBlockSide) * raster.side;
-            offset[i] =
-                static_cast<std::uint32_t>(i / kBlockSide * raster.stride() + i % kBlockSide);
-        }
-    }
-};
-
 /// Rows of four side by side.
 template <class Tag>
 HWY_INLINE hn::Vec<Tag> load_rows(Tag tag, const float* first, int stride) {
@@ -188,11 +186,12 @@ struct ReachedCells {
     Vector left, top;
     Mask reached;
 
-    HWY_INLINE ReachedCells(const Reach& reach, const FrontRaster& raster, const WindowCells& cells,
-                            int column, int row, int i) {
+    HWY_INLINE ReachedCells(const Reach& reach, const FrontRaster& raster, int column, int row,
+                            int i) {
         left = hn::Add(set(raster.left + static_cast<float>(column) * raster.side),
-                       load(cells.right, i));
-        top = hn::Add(set(raster.top + static_cast<float>(row) * raster.side), load(cells.down, i));
+                       load(raster.window.right, i));
+        top = hn::Add(set(raster.top + static_cast<float>(row) * raster.side),
+                      load(raster.window.down, i));
         const auto side = set(raster.side);
         const auto across =
             hn::And(hn::Le(set(reach.left), hn::Add(left, side)), hn::Ge(set(reach.right), left));
@@ -219,13 +218,13 @@ struct Pairs {
     /// Lists the cells of a window.
     template <class Test>
     HWY_INLINE void add(const Test& test, int lane, const Reach& reach, const FrontRaster& raster,
-                        const WindowCells& cells, int column, int row) {
+                        int column, int row) {
         const auto first = static_cast<std::uint32_t>(row * raster.stride() + column);
         for (int i = 0; i < kLanes; i += kStep) {
-            const ReachedCells reached(reach, raster, cells, column, row, i);
+            const ReachedCells reached(reach, raster, column, row, i);
             const Mask live =
                 test.may_cover(reached.reached, reached.left, reached.top, reach, raster.side);
-            const auto at = hn::Add(load(cells.offset, i), hn::Set(kIndices, first));
+            const auto at = hn::Add(load(raster.window.offset, i), hn::Set(kIndices, first));
             const auto all =
                 hn::Add(hn::ShiftLeft<4>(at), hn::Set(kIndices, static_cast<std::uint32_t>(lane)));
             const auto compressed = hn::Compress(all, hn::RebindMask(kIndices, live));
@@ -268,7 +267,6 @@ void intersect_raster(const Basis& basis, const ScreenPacket* packets, std::uint
     const LaneBits all = overlap_lanes(packet.bounds, window);
     if (all == 0) return;
     const CellRanges ranges(packet.bounds, raster);
-    const WindowCells cells(raster);
     for_kind(basis, packet, [&](const auto& make) {
         Pairs pairs;
         for (LaneBits lanes = all; lanes != 0; lanes &= lanes - 1) {
@@ -276,7 +274,7 @@ void intersect_raster(const Basis& basis, const ScreenPacket* packets, std::uint
             const Reach reach(packet.bounds, lane);
             const auto primitive = make(packet, lane);
             for_windows(ranges.of(lane), [&](int column, int row) {
-                pairs.add(primitive, lane, reach, raster, cells, column, row);
+                pairs.add(primitive, lane, reach, raster, column, row);
                 if (pairs.full()) pairs.test(make, packets, index, raster);
                 return true;
             });
@@ -287,11 +285,10 @@ void intersect_raster(const Basis& basis, const ScreenPacket* packets, std::uint
 
 bool raster_matters(const BoundsPacket& bounds, int lane, const FrontRaster& raster) {
     const Reach reach(bounds, lane);
-    const WindowCells cells(raster);
     bool any = false;
-    for_windows(CellRanges(bounds, raster).of(lane), [&](int column, int row) {
+    for_windows(CellRange::of(bounds, lane, raster), [&](int column, int row) {
         for (int i = 0; i < kLanes && !any; i += kStep) {
-            const ReachedCells reached(reach, raster, cells, column, row, i);
+            const ReachedCells reached(reach, raster, column, row, i);
             any = !hn::AllFalse(kFloats, reached.reached);
         }
         return !any;
@@ -423,6 +420,14 @@ float farthest_of(const FrontRaster& raster) {
 
 bool matters(const BoundsPacket& bounds, int lane, const FrontRaster& raster) {
     return HWY_DYNAMIC_DISPATCH(raster_matters)(bounds, lane, raster);
+}
+
+void FrontRaster::lay_window() {
+    for (int i = 0; i < kLanes; ++i) {
+        window.right[i] = static_cast<float>(i % kBlockSide) * side;
+        window.down[i] = static_cast<float>(i / kBlockSide) * side;
+        window.offset[i] = static_cast<std::uint32_t>(i / kBlockSide * stride() + i % kBlockSide);
+    }
 }
 
 void Front::start(const Projection& projection, const PointPacket& points) {

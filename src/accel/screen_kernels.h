@@ -39,6 +39,14 @@ struct FrontRaster {
     Front* fronts;
     std::uint8_t* dirty;  ///< a cell: 1 while its farthest depth is out of date
 
+    /// What the cells of a window are from its first one: right, down and in these arrays.
+    struct WindowCells {
+        Lanes<float> right, down;
+        Lanes<std::uint32_t> offset;
+    };
+    WindowCells window;
+
+    void lay_window();
     int stride() const { return across + kBeyond; }
     int cells() const { return stride() * (down + kBeyond); }
 };

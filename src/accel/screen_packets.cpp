@@ -99,7 +99,8 @@ void prepare_triangles(const Basis& basis, const Clusters& clusters, const Clust
     const TriangleLanes& triangles = clusters.triangles[cluster.packet];
     ScreenCorners corners;
     prepare(basis, triangles, packet, corners);
-    if (shades == nullptr) return;
+    packet.has_hit_numbers = shades == nullptr;
+    if (shades == nullptr) return record_hits(triangles, packet);
     const std::uint32_t* packed = clusters.corner_normals[cluster.object];
     CornerNormals normals;
     if (packed != nullptr) find_corner_normals(packed, cluster, packet, normals);
@@ -113,6 +114,7 @@ void prepare(const Basis& basis, const Clusters& clusters, const Cluster& cluste
              ScreenPacket& packet, PacketShades* shades) {
     packet.object = cluster.object;
     packet.kind = cluster.kind;
+    packet.has_hit_numbers = true;
     const std::uint32_t first =
         cluster.copy == kNoCopy ? 0 : clusters.copies[cluster.copy].first_primitive;
     for (int lane = 0; lane < cluster.count; ++lane) {

@@ -82,7 +82,9 @@ struct ScreenPacket {
     /// What a hit needs of its primitive. Of a sphere its centre. Of a triangle its first corner,
     /// normal, u and v axes: with p the hit less the corner, the barycentric coordinates are u . p
     /// and v . p. Of a glyph the rows of the inverse of its placement's map.
+    /// What is told by shades needs none of it, so that those of triangles may be left out.
     std::array<HitNumbers, kLanes> hit;
+    bool has_hit_numbers = true;
     Lanes<std::uint32_t> primitive;
     std::uint32_t object = 0;
     ClusterKind kind = ClusterKind::spheres;
@@ -133,8 +135,10 @@ struct Basis {
 /// The primitives of a packet whose object, kind and shape are set: bounds, forms and what hits
 /// need.
 void prepare(const Basis& basis, const SphereLanes& spheres, ScreenPacket& packet);
+/// Of triangles, what hits need comes after.
 void prepare(const Basis& basis, const TriangleLanes& triangles, ScreenPacket& packet,
              ScreenCorners& corners);
+void record_hits(const TriangleLanes& triangles, ScreenPacket& packet);
 void prepare(const Basis& basis, const SolidLanes& faces, ScreenPacket& packet);
 void prepare(const Basis& basis, const GlyphLanes& glyphs, ScreenPacket& packet);
 
@@ -143,7 +147,8 @@ void prepare_shades(const Basis& basis, const TriangleLanes& triangles,
                     const ScreenCorners& corners, const CornerNormals* normals,
                     const ScreenPacket& packet, PacketShades& shades);
 
-/// What the camera sees of a cluster; `shades`: null, or what is to be told if it is of triangles.
+/// What the camera sees of a cluster; `shades`: null, or what is to be told if it is of triangles,
+/// of which hits' numbers are then left out.
 void prepare(const Basis& basis, const Clusters& clusters, const Cluster& cluster,
              ScreenPacket& packet, PacketShades* shades = nullptr);
 

@@ -138,6 +138,10 @@ void ScreenTileTracer::intersect(std::span<const PointPacket> points,
     for (std::size_t k = 0; k < points.size(); ++k) {
         front.start(view_.projection, points[k]);
         find_front(front);
+        for (int i = 0; i < kLanes; ++i) {
+            const bool hit = front.depth[i] < kInfinity && front.depth[i] > -kInfinity;
+            if (hit) store_.complete(front.winner[i] / kLanes);
+        }
         ink::resolve(front, rays[k], store_.packets(), hits[k]);
     }
 }
@@ -178,7 +182,9 @@ FrontRaster ScreenTileTracer::lay_out(const BlockRaster& raster) {
                        nullptr,
                        nullptr,
                        fronts_.data(),
-                       nullptr};
+                       nullptr,
+                       {}};
+    fronts.lay_window();
     const auto cells = static_cast<std::size_t>(fronts.cells());
     farthest_.assign(cells, -kInfinity);
     front_at_.resize(cells);

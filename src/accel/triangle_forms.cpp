@@ -187,6 +187,9 @@ HWY_EXPORT(record_triangles);
 void prepare(const Basis& basis, const TriangleLanes& triangles, ScreenPacket& packet,
              ScreenCorners& corners) {
     HWY_DYNAMIC_DISPATCH(lay_triangles)(basis, triangles, packet, corners);
+}
+
+void record_hits(const TriangleLanes& triangles, ScreenPacket& packet) {
     HWY_DYNAMIC_DISPATCH(record_triangles)(triangles, packet);
 }
 

@@ -346,17 +346,16 @@ void Film::put_row(int x, int y, std::span<const ColorPacket* const> shaded) {
     constexpr std::size_t kMost = 16;  // so many stay in the nearest cache
     for (; !shaded.empty(); x += static_cast<int>(kMost) * kBlockSide) {
         const std::size_t count = std::min(kMost, shaded.size());
-        std::array<const ColorPacket*, kMost> colors;
-        for (std::size_t k = 0; k < count; ++k) {
-            colors[k] = settings_.compose == Compose::lines ? &paper_ : shaded[k];
-        }
+        std::array<const ColorPacket*, kMost> paper;
+        paper.fill(&paper_);
+        const bool covered = settings_.compose == Compose::lines;
+        const ColorPacket* const* const colors = covered ? paper.data() : shaded.data();
         if (settings_.linear) {
             std::array<const Lanes<float>*, kMost> blocks;
             for (std::size_t c = 0; c < kChannels.size(); ++c) {
                 for (std::size_t k = 0; k < count; ++k) {
-                    const ColorPacket* const block =
-                        colors[k] == nullptr ? &background_.linear : colors[k];
-                    blocks[k] = &(block->*kChannels[c]);
+                    const ColorPacket& own = colors[k] == nullptr ? background_.linear : *colors[k];
+                    blocks[k] = &(own.*kChannels[c]);
                 }
                 copy_blocks<float>(size_, x, y, std::span(blocks).first(count), linear_plane(c));
             }
@@ -364,9 +363,9 @@ void Film::put_row(int x, int y, std::span<const ColorPacket* const> shaded) {
         if (settings_.display) {
             std::array<Lanes<std::uint32_t>, kMost> bytes;
             std::array<const Lanes<std::uint32_t>*, kMost> blocks;
+            encode_bytes(colors, std::span(bytes).first(count));
             for (std::size_t k = 0; k < count; ++k) {
                 blocks[k] = colors[k] == nullptr ? &background_.display : &bytes[k];
-                if (colors[k] != nullptr) encode_bytes(*colors[k], bytes[k]);
             }
             copy_blocks<std::uint32_t>(size_, x, y, std::span(blocks).first(count),
                                        display_.pixels.data());

@@ -41,7 +41,8 @@ HWY_INLINE hn::Vec<Integers> srgb_bytes(const SrgbBytes& table, hn::Vec<Floats> 
     return hn::Or(hn::Or(red, hn::ShiftLeft<8>(green)), hn::ShiftLeft<16>(blue));
 }
 
-void encode(const SrgbBytes& table, const ColorPacket& linear, Lanes<std::uint32_t>& bytes) {
+HWY_INLINE void encode_block(const SrgbBytes& table, const ColorPacket& linear,
+                             Lanes<std::uint32_t>& bytes) {
     const auto zero = hn::Zero(kFloats);
     const auto one = hn::Set(kFloats, 1.0F);
     for (int i = 0; i < kLanes; i += kStep) {
@@ -62,6 +63,14 @@ void encode(const SrgbBytes& table, const ColorPacket& linear, Lanes<std::uint32
         const auto pixel = hn::Or(srgb_bytes(table, r, g, b), hn::ShiftLeft<24>(alpha));
         hn::Store(hn::BitCast(hn::RebindToUnsigned<Integers>(), pixel),
                   hn::RebindToUnsigned<Integers>(), bytes.data() + i);
+    }
+}
+
+void encode(const SrgbBytes& table, const ColorPacket* const* linear,
+            std::span<Lanes<std::uint32_t>> bytes) {
+    for (Lanes<std::uint32_t>& block : bytes) {
+        if (*linear != nullptr) encode_block(table, **linear, block);
+        ++linear;
     }
 }
 
@@ -103,9 +112,14 @@ SrgbBytes::SrgbBytes() {
 
 HWY_EXPORT(encode);
 
-void encode_bytes(const ColorPacket& linear, Lanes<std::uint32_t>& bytes) {
+void encode_bytes(const ColorPacket* const* linear, std::span<Lanes<std::uint32_t>> bytes) {
     static const SrgbBytes kTable;
     HWY_DYNAMIC_DISPATCH(encode)(kTable, linear, bytes);
+}
+
+void encode_bytes(const ColorPacket& linear, Lanes<std::uint32_t>& bytes) {
+    const ColorPacket* const one = &linear;
+    encode_bytes(&one, {&bytes, 1});
 }
 
 }  // namespace ink

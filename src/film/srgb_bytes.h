@@ -4,6 +4,7 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 
 #include "base/lanes.h"
 #include "shading/shading.h"
@@ -29,5 +30,7 @@ struct SrgbBytes {
 
 /// Pixels R, G, B, A with straight alpha, from linear light times alpha.
 void encode_bytes(const ColorPacket& linear, Lanes<std::uint32_t>& bytes);
+/// The same of as many blocks as there is room for, unless they are null.
+void encode_bytes(const ColorPacket* const* linear, std::span<Lanes<std::uint32_t>> bytes);
 
 }  // namespace ink
