@@ -9,8 +9,8 @@ namespace ink {
 
 void MeshLocator::locate(const SampleGrid& grid, std::span<const SuspectEdge> suspects,
                          std::span<const MeshEdge> edges, const IdentifyFunction& identify,
-                         const SampleFunction& sample, std::vector<Crossing>& crossings,
-                         std::vector<std::uint32_t>& left) {
+                         const SurfaceFunction& describe, const SampleFunction& sample,
+                         std::vector<Crossing>& crossings, std::vector<std::uint32_t>& left) {
     constexpr int kMostFolds = 4;
     doubted_.clear();
     slits_.clear();
@@ -20,7 +20,7 @@ void MeshLocator::locate(const SampleGrid& grid, std::span<const SuspectEdge> su
         check(grid.spacing, identify, crossings, left);
     }
     for (const Search& search : open_) left.push_back(search.edge);
-    if (!doubted_.empty()) drop_slits(grid, sample, left);
+    if (!doubted_.empty()) drop_slits(grid, describe, sample, left);
 }
 
 void MeshLocator::start(const SampleGrid& grid, std::span<const SuspectEdge> suspects,
@@ -111,16 +111,21 @@ void MeshLocator::check(float spacing, const IdentifyFunction& identify,
 
 /// Where the surface on the far side of the line goes on past the near end, that end looked into a
 /// slit.
-void MeshLocator::drop_slits(const SampleGrid& grid, const SampleFunction& sample,
-                             std::vector<std::uint32_t>& left) {
+void MeshLocator::drop_slits(const SampleGrid& grid, const SurfaceFunction& describe,
+                             const SampleFunction& sample, std::vector<std::uint32_t>& left) {
+    const auto seen_at = [&](std::size_t point) {
+        Sample seen = grid.sample(point);
+        describe(point, seen);
+        return seen;
+    };
     points_.clear();
     for (const Doubt& doubt : doubted_) points_.push_back(doubt.past);
     samples_.resize(points_.size());
     sample(points_, samples_);
     for (std::size_t n = 0; n < doubted_.size(); ++n) {
         const auto& [search, first, past] = doubted_[n];
-        const Sample before = grid.sample(first ? search.at_second : search.at_first);
-        const Sample within = grid.sample(first ? search.at_first : search.at_second);
+        const Sample before = seen_at(first ? search.at_second : search.at_first);
+        const Sample within = seen_at(first ? search.at_first : search.at_second);
         if (!is_slit(viewpoint_, before, within, samples_[n], least_turn(settings_))) {
             left.push_back(search.edge);
         } else if (first) {

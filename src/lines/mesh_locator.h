@@ -39,8 +39,8 @@ class MeshLocator {
     /// Adds crossings, and to `left` the suspect edges that are left.
     void locate(const SampleGrid& grid, std::span<const SuspectEdge> suspects,
                 std::span<const MeshEdge> edges, const IdentifyFunction& identify,
-                const SampleFunction& sample, std::vector<Crossing>& crossings,
-                std::vector<std::uint32_t>& left);
+                const SurfaceFunction& describe, const SampleFunction& sample,
+                std::vector<Crossing>& crossings, std::vector<std::uint32_t>& left);
 
     /// Suspect edges of the last call whose first end looks into a slit, and their second beside
     /// it.
@@ -73,8 +73,8 @@ class MeshLocator {
     void look(float spacing, std::vector<Crossing>& crossings, std::vector<std::uint32_t>& left);
     void check(float spacing, const IdentifyFunction& identify, std::vector<Crossing>& crossings,
                std::vector<std::uint32_t>& left);
-    void drop_slits(const SampleGrid& grid, const SampleFunction& sample,
-                    std::vector<std::uint32_t>& left);
+    void drop_slits(const SampleGrid& grid, const SurfaceFunction& describe,
+                    const SampleFunction& sample, std::vector<std::uint32_t>& left);
     Verdict classify(float spacing, const MeshCrossing& mesh, Crossing& crossing) const;
     Verdict classify_limb(float spacing, const MeshCrossing& mesh, Crossing& crossing) const;
     bool is_confirmed(const MeshCrossing& mesh, SurfaceKey seen) const;

@@ -309,7 +309,8 @@ void LineFinder::locate() {
         }
     }
     ball_locator_.locate(identify_, crossings_, others_);
-    mesh_locator_.locate(grid_, suspects_, mesh_edges_, identify_, sample_, crossings_, others_);
+    mesh_locator_.locate(grid_, suspects_, mesh_edges_, identify_, describe_, sample_, crossings_,
+                         others_);
     locator_.locate_some(grid_, suspects_, others_, describe_, sample_, crossings_);
 }
 

@@ -151,7 +151,7 @@ class LineFinder {
     SampleBlocks sample_blocks();
     std::uint32_t cut_strip(std::uint32_t strip, int first, bool down);
     void put_ends();
-    void put_sample(int i, int j);
+    void put_end(int i, int j);
     void keep_for_ridges(const Tile& tile);
     void shade(std::size_t first, std::size_t count);
     void put_pixels(const Tile& tile);

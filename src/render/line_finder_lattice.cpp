@@ -320,27 +320,20 @@ std::uint32_t LineFinder::cut_strip(std::uint32_t strip, int first, bool down) {
     return static_cast<std::uint32_t>(to);
 }
 
-/// Fills the grid where edges are suspect.
+/// Fills the grid where edges are suspect, but for places and normals, which `describe` adds.
 void LineFinder::put_ends() {
     for (const SuspectEdge& edge : suspects_) {
-        put_sample(edge.i, edge.j);
-        put_sample(edge.i + (edge.down ? 0 : 1), edge.j + (edge.down ? 1 : 0));
+        put_end(edge.i, edge.j);
+        put_end(edge.i + (edge.down ? 0 : 1), edge.j + (edge.down ? 1 : 0));
     }
 }
 
-void LineFinder::put_sample(int i, int j) {
+void LineFinder::put_end(int i, int j) {
     const std::size_t n = grid_.index(i, j);
     const auto [k, lane] = place_of(i, j);
-    grid_.id[n] = k == kEmptyBlock ? kBackground : ids_[k][lane];
-    grid_.t[n] = 0.0F;
-    if (grid_.id[n] == kBackground) return;
-    grid_.t[n] = hits_[k].t[lane];
-    grid_.px[n] = places_[k].x[lane];
-    grid_.py[n] = places_[k].y[lane];
-    grid_.pz[n] = places_[k].z[lane];
-    grid_.nx[n] = normals_[k].x[lane];
-    grid_.ny[n] = normals_[k].y[lane];
-    grid_.nz[n] = normals_[k].z[lane];
+    const GeometryId id = k == kEmptyBlock ? kBackground : ids_[k][lane];
+    grid_.id[n] = id;
+    grid_.t[n] = id == kBackground ? 0.0F : hits_[k].t[lane];
 }
 
 void LineFinder::keep_for_ridges(const Tile& tile) {
@@ -365,13 +358,19 @@ void LineFinder::shade(std::size_t first, std::size_t count) {
 void LineFinder::describe(std::size_t point, Sample& sample) const {
     if (sample.id == kBackground) return;
     const auto width = static_cast<std::size_t>(grid_.width);
-    const LatticeHit hit = hit_at(static_cast<int>(point % width), static_cast<int>(point / width));
+    const auto i = static_cast<int>(point % width);
+    const auto j = static_cast<int>(point / width);
+    if (!fills_grid_) {
+        const auto [k, lane] = place_of(i, j);
+        sample.position = {places_[k].x[lane], places_[k].y[lane], places_[k].z[lane]};
+        sample.normal = {normals_[k].x[lane], normals_[k].y[lane], normals_[k].z[lane]};
+    }
+    const LatticeHit hit = hit_at(i, j);
     edges_.surfaces.describe(*hit.hits, hit.lane, sample);
     if (!front_) sample.ball = {};  // its outline and seams may lie on another layer
     if (!ids_only_) return;
     // Rarely asked for: the ray is made once more.
-    const Vec2f place =
-        grid_.point(static_cast<int>(point % width), static_cast<int>(point / width));
+    const Vec2f place = grid_.point(i, j);
     RayPacket ray;
     edges_.pipeline.camera.make_rays(Lanes<float>::filled(place.x), Lanes<float>::filled(place.y),
                                      ray);

@@ -65,8 +65,8 @@ struct Viewpoint {
 /// Asks for samples at points of the screen (pixels): as many out as in.
 using SampleFunction = std::function<void(std::span<const Vec2f> points, std::span<Sample> out)>;
 
-/// Adds to a sample of a grid, by its index, what the grid does not keep: facet, ball
-/// and rim.
+/// Adds to a sample of a grid, by its index, what the grid does not keep: facet, ball and rim, and
+/// perhaps position and normal.
 using SurfaceFunction = std::function<void(std::size_t point, Sample& sample)>;
 
 /// Where the way from one point of the screen, the sample's own, to another leaves the triangle
