@@ -130,7 +130,7 @@ TEST(FindNearest, IsTheLeastDistanceToTheEdgesOfThePixelsOwnFace) {
     }
 }
 
-TEST(CoverTiling, IsTheAreaUnderABandAlongTheNearestLine) {
+TEST(TilingInk, IsTheAreaUnderABandAlongTheNearestLine) {
     std::mt19937 random(5);
     std::uniform_real_distribution<float> number(-1.0F, 1.0F);
     std::uniform_real_distribution<float> place(-3.0F, 3.0F);
@@ -150,9 +150,9 @@ TEST(CoverTiling, IsTheAreaUnderABandAlongTheNearestLine) {
         const TilingLines lines = lines_about(spot, 4.0F);
         const float half = std::abs(number(random));
         NearestEdges nearest;
-        Lanes<float> inks;
+        Lanes<float> inks{};
         find_nearest(lines, x, y, nearest);
-        cover(lines, x, y, half, inks);
+        ink(spot, 4.0F, x, y, {half, 1.0F}, inks);
         for (int i = 0; i < kLanes; ++i) {
             const bool far = nearest.distance[i] > 1e6F;
             const float area =

@@ -49,56 +49,23 @@ void LineDensity::finish() {
     }
 }
 
-/// Numbers by value, so that nothing that a loop writes can change them.
-struct LineDensity::Raster {
-    const Square* squares;
-    Vec2f shift;
-    float shrink, per_square;
-    int i0, j0, i1, j1, across;
-};
-
-LineDensity::Raster LineDensity::raster() const {
+DensityRaster LineDensity::raster() const {
     return {squares_.data(),   shift_,          shrink_, 1.0F / static_cast<float>(side_), i0_, j0_,
             i0_ + across_ - 2, j0_ + down_ - 2, across_};
 }
 
-/// Between the middles of four squares, in proportion; squares cut by the border weigh less.
-INKTRACE_INLINE float LineDensity::share_at(const Raster& r, Vec2f point) {
-    const float x = (point.x * r.shrink + r.shift.x) * r.per_square - 0.5F;
-    const float y = (point.y * r.shrink + r.shift.y) * r.per_square - 0.5F;
-    const int i = std::min(std::max(static_cast<int>(std::floor(x)), r.i0), r.i1);
-    const int j = std::min(std::max(static_cast<int>(std::floor(y)), r.j0), r.j1);
-    const float right = std::min(std::max(x - static_cast<float>(i), 0.0F), 1.0F);
-    const float below = std::min(std::max(y - static_cast<float>(j), 0.0F), 1.0F);
-    const Square* upper = r.squares + ((j - r.j0) * r.across + (i - r.i0));
-    const Square* lower = upper + r.across;
-    const auto mix = [&](float Square::*value) {
-        const float above = upper[0].*value + right * (upper[1].*value - upper[0].*value);
-        const float under = lower[0].*value + right * (lower[1].*value - lower[0].*value);
-        return above + below * (under - above);
-    };
-    const float searched = mix(&Square::searched);
-    const float inked = mix(&Square::inked);
-    return searched > 0.0F ? inked / searched : 0.0F;
+float LineDensity::at(Vec2f point) const {
+    float share = 0.0F;
+    at(std::span(&point, 1), std::span(&share, 1));
+    return share;
 }
-
-INKTRACE_MULTIVERSION
-void LineDensity::shares_at(const Raster& all, std::span<const Vec2f> points,
-                            std::span<float> shares) {
-    const Raster raster = all;
-    const Vec2f* const from = points.data();
-    float* __restrict const to = shares.data();
-    for (std::size_t k = 0; k < points.size(); ++k) to[k] = share_at(raster, from[k]);
-}
-
-float LineDensity::at(Vec2f point) const { return share_at(raster(), point); }
 
 void LineDensity::at(std::span<const Vec2f> points, std::span<float> shares) const {
-    shares_at(raster(), points, shares);
+    find_shares(raster(), points, shares);
 }
 
 float LineDensity::most_within(Vec2f lower, Vec2f upper) const {
-    const Raster r = raster();
+    const DensityRaster r = raster();
     const auto first = [&](float at, float shift, int least, int most) {
         const float place = (at * r.shrink + shift) * r.per_square - 0.5F;
         return std::clamp(static_cast<int>(std::floor(place)), least, most);
@@ -111,7 +78,7 @@ float LineDensity::most_within(Vec2f lower, Vec2f upper) const {
     float most = 0.0F;
     for (int j = j0; j <= j1; ++j) {
         for (int i = i0; i <= i1; ++i) {
-            const Square& here = squares_[square(i, j)];
+            const DensityRaster::Square& here = squares_[square(i, j)];
             if (here.searched > 0.0F) most = std::max(most, here.inked / here.searched);
             // What is inked where nothing was searched belongs to its neighbours.
             if (here.searched <= 0.0F && here.inked > 0.0F) return kInfinity;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/vec.h"
+#include "lines/density_lanes.h"
 #include "lines/ink.h"
 
 namespace ink {
@@ -66,19 +67,9 @@ class LineDensity {
     void enlarge(float factor, Vec2f middle_before, Vec2f middle_after);
 
   private:
-    /// What a square adds to the shares of places near it.
-    struct Square {
-        float inked = 0.0F;     ///< square pixels
-        float searched = 0.0F;  ///< likewise
-    };
-
     static constexpr float kFixedPoint = 1 << 20;
 
-    struct Raster;
-    Raster raster() const;
-    static float share_at(const Raster& raster, Vec2f point);
-    static void shares_at(const Raster& raster, std::span<const Vec2f> points,
-                          std::span<float> shares);
+    DensityRaster raster() const;
     std::size_t square(int i, int j) const {
         return static_cast<std::size_t>(j - j0_) * static_cast<std::size_t>(across_) +
                static_cast<std::size_t>(i - i0_);
@@ -90,7 +81,7 @@ class LineDensity {
     int i0_ = 0, j0_ = 0;        ///< the first square: one before the picture's
     int across_ = 0, down_ = 0;  ///< squares
     std::vector<Amount> inked_;
-    std::vector<Square> squares_;
+    std::vector<DensityRaster::Square> squares_;
     float shrink_ = 1.0F;  ///< from the places of `at`
     Vec2f shift_;          ///< likewise, after shrinking
 };

@@ -32,6 +32,25 @@ bool divides(const Segment& line) {
     return line.spans_cell && line.type != LineType::mesh && line.type != LineType::ridge;
 }
 
+/// A line that colours change across, and on which sides of it the corners of its cell lie.
+class DividedCorners {
+  public:
+    DividedCorners(const Segment& line, const std::array<Vec2f, 4>& corners) : line_(&line) {
+        for (std::size_t k = 0; k < 4; ++k) sides_[k] = side_of(line, corners[k]);
+    }
+    /// Those beyond the line from a point have no weight.
+    void drop(Vec2f point, std::array<float, 4>& weights) const {
+        const float side = side_of(*line_, point);
+        for (std::size_t k = 0; k < 4; ++k) {
+            if (side * sides_[k] < 0.0F) weights[k] = 0.0F;
+        }
+    }
+
+  private:
+    const Segment* line_;
+    std::array<float, 4> sides_{};
+};
+
 /// A pixel of which some corners of its cell count, by their weights.
 std::uint32_t mixed(const std::array<std::uint32_t, 4>& corners,
                     const std::array<float, 4>& weights) {
@@ -120,7 +139,8 @@ void PixelEnlarger::sharpen(const Tile& tile, std::span<const Segment> lines, Fi
 
 void PixelEnlarger::sharpen_cell(int column, int row, std::span<const Segment> lines, Film& film,
                                  FaceTiling* faces) const {
-    if (std::ranges::none_of(lines, divides)) return;
+    thread_local std::vector<DividedCorners> dividing;
+    dividing.clear();
     const Size size = pixels_.size;
     std::array<std::uint32_t, 4> corners;
     std::array<Vec2f, 4> places;
@@ -132,6 +152,10 @@ void PixelEnlarger::sharpen_cell(int column, int row, std::span<const Segment> l
                                         static_cast<std::size_t>(size.width) +
                                     static_cast<std::size_t>(std::clamp(i, 0, size.width - 1))];
     }
+    for (const Segment& line : lines) {
+        if (divides(line)) dividing.emplace_back(line, places);
+    }
+    if (dividing.empty()) return;
     // Pixels whose centres lie in the cell.
     const Vec2f lower = enlargement_.enlarged(places[0]);
     const Vec2f upper = enlargement_.enlarged(places[3]);
@@ -151,13 +175,7 @@ void PixelEnlarger::sharpen_cell(int column, int row, std::span<const Segment> l
                 return static_cast<int>(std::ranges::max_element(weights) - weights.begin());
             };
             const int nearest = heaviest();
-            for (const Segment& line : lines) {
-                if (!divides(line)) continue;
-                const float side = side_of(line, point);
-                for (std::size_t k = 0; k < 4; ++k) {
-                    if (side * side_of(line, places[k]) < 0.0F) weights[k] = 0.0F;
-                }
-            }
+            for (const DividedCorners& line : dividing) line.drop(point, weights);
             constexpr float kLeast = 1e-3F;
             if (weights[0] + weights[1] + weights[2] + weights[3] < kLeast) continue;
             film.display_row(y)[static_cast<std::size_t>(x)] = mixed(corners, weights);

@@ -250,17 +250,13 @@ bool FaceTiling::ink(int x, int y, FaceBand band, const Lanes<float>& others,
                   [&](const TilingSpot& spot, const Lanes<float>& off_x, const Lanes<float>& off_y,
                       std::uint32_t own) {
                       any = true;
-                      Lanes<float> found;
-                      cover(lines_about(spot, factor_), off_x, off_y, band.half, found);
-                      if (own == kAllPixels) {
-                          for (int i = 0; i < kLanes; ++i) {
-                              alpha[i] = std::max(alpha[i], found[i] * band.opacity);
-                          }
-                          return;
-                      }
+                      if (own == kAllPixels)
+                          return ink::ink(spot, factor_, off_x, off_y, band, alpha);
+                      Lanes<float> found = others;
+                      ink::ink(spot, factor_, off_x, off_y, band, found);
                       for (; own != 0; own &= own - 1) {
                           const int i = std::countr_zero(own);
-                          alpha[i] = std::max(alpha[i], found[i] * band.opacity);
+                          alpha[i] = found[i];
                       }
                   });
     return any;

@@ -98,9 +98,11 @@ void find_nearest_tiling(const TilingLines& lines, const Lanes<float>& x, const 
     }
 }
 
-void cover_tiling(const TilingLines& lines, const Lanes<float>& x, const Lanes<float>& y,
-                  float half, Lanes<float>& inks) {
+void ink_tiling(const TilingSpot& spot, float factor, const Lanes<float>& x, const Lanes<float>& y,
+                FaceBand band, Lanes<float>& alpha) {
+    const TilingLines lines = find_lines_about(spot, factor);
     const FamilyShapes shapes(lines);
+    const float half = band.half;
     for (int i = 0; i < kLanes; i += kStep) {
         Number reach = set(0.5F);
         Number flat = set(0.5F);
@@ -116,7 +118,8 @@ void cover_tiling(const TilingLines& lines, const Lanes<float>& x, const Lanes<f
         const SquareCoverage area(reach, flat, slope, corner);
         const Number ink =
             hn::Sub(area(hn::Sub(set(half), distance)), area(hn::Sub(set(-half), distance)));
-        hn::Store(ink, kFloats, inks.data() + i);
+        float* const most = alpha.data() + i;
+        hn::Store(hn::Max(hn::Mul(ink, set(band.opacity)), hn::Load(kFloats, most)), kFloats, most);
     }
 }
 
@@ -127,9 +130,9 @@ HWY_AFTER_NAMESPACE();
 
 namespace ink {
 
-HWY_EXPORT(cover_tiling);
 HWY_EXPORT(find_lines_about);
 HWY_EXPORT(find_nearest_tiling);
+HWY_EXPORT(ink_tiling);
 
 TilingLines lines_about(const TilingSpot& spot, float factor) {
     return HWY_DYNAMIC_DISPATCH(find_lines_about)(spot, factor);
@@ -140,9 +143,9 @@ void find_nearest(const TilingLines& lines, const Lanes<float>& x, const Lanes<f
     HWY_DYNAMIC_DISPATCH(find_nearest_tiling)(lines, x, y, nearest);
 }
 
-void cover(const TilingLines& lines, const Lanes<float>& x, const Lanes<float>& y, float half,
-           Lanes<float>& inks) {
-    HWY_DYNAMIC_DISPATCH(cover_tiling)(lines, x, y, half, inks);
+void ink(const TilingSpot& spot, float factor, const Lanes<float>& x, const Lanes<float>& y,
+         FaceBand band, Lanes<float>& alpha) {
+    HWY_DYNAMIC_DISPATCH(ink_tiling)(spot, factor, x, y, band, alpha);
 }
 
 }  // namespace ink

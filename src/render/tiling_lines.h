@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "base/lanes.h"
+#include "render/face_band.h"
 #include "render/nearest_edges.h"
 
 namespace ink {
@@ -34,9 +35,9 @@ TilingLines lines_about(const TilingSpot& spot, float factor);
 void find_nearest(const TilingLines& lines, const Lanes<float>& x, const Lanes<float>& y,
                   NearestEdges& nearest);
 
-/// The area of the pixels about sixteen points under bands of that half width along the nearest
-/// line.
-void cover(const TilingLines& lines, const Lanes<float>& x, const Lanes<float>& y, float half,
-           Lanes<float>& inks);
+/// What the lines about a spot ink of the pixels about sixteen points, by the area under a band
+/// along the nearest one; where that is less, `alpha` stays as it is.
+void ink(const TilingSpot& spot, float factor, const Lanes<float>& x, const Lanes<float>& y,
+         FaceBand band, Lanes<float>& alpha);
 
 }  // namespace ink
