@@ -6,6 +6,7 @@
 
 #include "accel/cluster_bands.h"
 #include "accel/screen_borders.h"
+#include "accel/screen_kernels.h"
 #include "accel/screen_packets.h"
 
 namespace ink {
@@ -42,6 +43,8 @@ class PacketStore {
         if (wants_shades_) shades_.resize(packets_.size());
         prepare(basis_, clusters_, clusters_.clusters[cluster], packets_[place],
                 wants_shades_ ? &shades_[place] : nullptr);
+        set_union(packets_[place].bounds, wholes_[place / kLanes],
+                  static_cast<int>(place % kLanes));
         if (wants_sides_ && packets_[place].kind == ClusterKind::triangles) {
             sides_.resize(packets_.size());
             find_sides(packets_[place], sides_[place]);
@@ -50,6 +53,11 @@ class PacketStore {
     }
 
     const ScreenPacket* packets() const { return packets_.data(); }
+
+    /// Copies the bounds of all that a packet has.
+    void copy_bounds(std::uint32_t place, BoundsPacket& to, int lane) const {
+        wholes_[place / kLanes].copy(static_cast<int>(place % kLanes), to, lane);
+    }
 
     /// Makes sure that a packet has what hits need.
     void complete(std::uint32_t place) {
@@ -109,12 +117,14 @@ class PacketStore {
     std::uint32_t add_place() {
         packets_.emplace_back();
         owners_.emplace_back();
+        wholes_.resize((packets_.size() + kLanes - 1) / kLanes);
         return static_cast<std::uint32_t>(packets_.size() - 1);
     }
 
     const Clusters& clusters_;
     const Basis& basis_;
     std::vector<ScreenPacket> packets_;
+    std::vector<BoundsPacket> wholes_;  ///< bounds of sixteen packets each
     bool wants_sides_ = false;
     std::vector<PacketSides> sides_;  ///< of each packet of triangles
     bool wants_shades_ = false;

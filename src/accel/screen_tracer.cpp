@@ -287,8 +287,8 @@ std::uint32_t ScreenTileTracer::packet_of(std::size_t candidate) {
     ++used_;
     index = store_.get(candidates_.cluster(candidate));
     // Closer than those of the cluster's box.
-    set_union(store_.packets()[index].bounds, candidates_.bounds(candidate / kLanes),
-              static_cast<int>(candidate % kLanes));
+    store_.copy_bounds(index, candidates_.bounds(candidate / kLanes),
+                       static_cast<int>(candidate % kLanes));
     return index;
 }
 
