@@ -13,6 +13,7 @@ std::vector<std::size_t> FoldCrumbs::find(const FoldEndings& endings,
                                           std::span<const Segment> bridges,
                                           std::span<const std::uint32_t> owners) {
     for (const std::uint32_t k : graph_.folds()) {
+        if (graph_.root(k) == k) roots_.push_back(k);
         group_of(k).length += length(lines_[k].b - lines_[k].a);
     }
     for (std::size_t n = 0; n < owners.size(); ++n) {
@@ -22,6 +23,7 @@ std::vector<std::size_t> FoldCrumbs::find(const FoldEndings& endings,
     for (const std::uint32_t k : endings.free) group_of(k).free = true;
     for (const std::uint32_t k : endings.stubs) group_of(k).stub = true;
     unite_followers(endings.followers);
+    std::erase_if(roots_, [&](std::uint32_t k) { return graph_.root(k) != k; });
     do {
         attach(endings.hangs);
     } while (judge());
@@ -37,7 +39,8 @@ void FoldCrumbs::unite_followers(std::span<const FoldHang> followers) {
     for (const FoldHang& hang : followers) {
         asked[graph_.root(hang.fold)] = asked[graph_.root(hang.line)] = 1;
     }
-    measure([&](std::uint32_t root) { return asked[root] != 0; });
+    // And at once what will be asked for next, as a rule.
+    measure([&](std::uint32_t root) { return asked[root] != 0 || may_be_shallow(groups_[root]); });
     const auto counts = [&](std::uint32_t fold) {
         const Group& group = group_of(fold);
         return group.length * group.depth >= settings_.stub_area * width_ * width_;
@@ -63,7 +66,7 @@ void FoldCrumbs::unite_followers(std::span<const FoldHang> followers) {
 
 /// What hung on a crumb ends freely.
 void FoldCrumbs::attach(std::span<const FoldHang> hangs) {
-    for (Group& group : groups_) group.attached = false;
+    for (const std::uint32_t root : roots_) groups_[root].attached = false;
     for (const auto& [fold, line, at_b] : hangs) {
         Group& group = group_of(fold);
         if (graph_.root(line) == graph_.root(fold)) continue;
@@ -84,16 +87,18 @@ float FoldCrumbs::least_length(const Group& group) const {
     return group.loose || group.stub ? settings_.shortest_stub * width_ : 0.0F;
 }
 
+/// Whether its depth makes it a crumb or not.
+bool FoldCrumbs::may_be_shallow(const Group& group) const {
+    return is_short(group) && !group.crumb && group.length >= least_length(group);
+}
+
 /// Finds crumbs among groups that are none so far. What hung on one ends freely from then on, so
 /// that there may be more: false if no group became one.
 bool FoldCrumbs::judge() {
-    measure([&](std::uint32_t root) {
-        const Group& group = groups_[root];
-        return is_short(group) && !group.crumb && group.length >= least_length(group);
-    });
+    measure([&](std::uint32_t root) { return may_be_shallow(groups_[root]); });
     bool any = false;
-    for (const std::uint32_t k : graph_.folds()) {
-        Group& group = group_of(k);
+    for (const std::uint32_t root : roots_) {
+        Group& group = groups_[root];
         if (group.crumb) continue;
         const float most = group.attached ? settings_.stub_area : settings_.crumb_area;
         group.crumb = group.length < least_length(group) ||
@@ -107,12 +112,14 @@ bool FoldCrumbs::judge() {
 /// First of a few folds of each: mostly these are deep enough to tell that the group counts.
 template <class Asked>
 void FoldCrumbs::measure(Asked asked) {
-    constexpr std::uint32_t kFew = 4;  // one of so many
+    constexpr std::uint32_t kFew = 8;  // one of so many
+    const auto wanted = [&](std::uint32_t root) { return !groups_[root].measured && asked(root); };
+    if (std::ranges::none_of(roots_, wanted)) return;
     std::vector<std::uint32_t> first;
     std::vector<std::uint32_t> rest;
     for (const std::uint32_t k : graph_.folds()) {
+        if (!wanted(graph_.root(k))) continue;
         Group& group = group_of(k);
-        if (group.measured || !asked(graph_.root(k))) continue;
         (group.folds++ % kFew == 0 ? first : rest).push_back(k);
     }
     measure_all(first);

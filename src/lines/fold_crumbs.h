@@ -66,6 +66,7 @@ class FoldCrumbs {
     bool judge();
     bool is_short(const Group& group) const;
     float least_length(const Group& group) const;
+    bool may_be_shallow(const Group& group) const;
     template <class Asked>
     void measure(Asked asked);
     void measure_all(std::vector<std::uint32_t>& folds);
@@ -77,6 +78,7 @@ class FoldCrumbs {
     float width_;
     const FoldSettings& settings_;
     std::vector<Group> groups_;
+    std::vector<std::uint32_t> roots_;  ///< of the groups
 };
 
 }  // namespace ink
