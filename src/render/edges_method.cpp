@@ -130,18 +130,29 @@ LineThinning thinning_of(const Edges& edges,
     return thinning;
 }
 
-/// Puts the pixels on the film to which lines of several tiles add.
-void finish_fringes(const Edges& edges, const std::vector<TileLines>& found, WorkLoop& loop) {
-    if (!edges.smooth_shading) return;
+/// Puts the pixels on the film to which lines of several tiles add, and mends lines: much of that
+/// is for one thread, while the others have pixels to put.
+RenderStats finish_tiles(const Edges& edges, std::vector<std::unique_ptr<LineFinder>>& finders,
+                         FoundLines& found, WorkLoop& loop) {
     std::vector<const Fringe*> fringes;
-    fringes.reserve(found.size());
-    for (const TileLines& tile : found) fringes.push_back(&tile.fringe);
+    if (edges.smooth_shading) {
+        fringes.reserve(found.tiles.size());
+        for (const TileLines& tile : found.tiles) fringes.push_back(&tile.fringe);
+    }
     const ColorPacket& empty = edges.pipeline.shader.background();
     const PixelColor background{empty.r[0], empty.g[0], empty.b[0], empty.a[0]};
-    loop.run(found.size(), [&](std::size_t i, std::size_t) {
-        finish_fringe(edges.search_tiles, fringes, edges.search_tiles_across(), i, background,
-                      edges.pipeline.film);
+    RenderStats mending;
+    const std::size_t mends = edges.mends_lines() ? 1 : 0;
+    loop.expect(mends);
+    loop.run(mends + fringes.size(), [&](std::size_t i, std::size_t) {
+        if (i < mends) {
+            mending = mend_lines(edges, finders, found.tiles, found.toned);
+        } else {
+            finish_fringe(edges.search_tiles, fringes, edges.search_tiles_across(), i - mends,
+                          background, edges.pipeline.film);
+        }
     });
+    return mending;
 }
 
 template <class Worker>
@@ -193,8 +204,7 @@ FoundLines find_lines(const Edges& edges, WorkLoop& loop, RenderStats& stats) {
         found.hidden[i] = behind[worker]->search(edges.search_tiles[i], *finders[worker]);
     });
 
-    finish_fringes(edges, found.tiles, loop);
-    if (edges.mends_lines()) stats += mend_lines(edges, finders, found.tiles, found.toned);
+    stats += finish_tiles(edges, finders, found, loop);
     const LineDensity ridge_density =
         ridges ? add_ridges(edges, *ridges, loop, found, stats) : edges.no_lines;
     found.thinning = thinning_of(edges, finders, ridge_density);
