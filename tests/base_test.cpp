@@ -155,6 +155,25 @@ TEST_P(ParallelFor, GivesNoTwoCallsAtOneTimeTheSameWorker) {
     EXPECT_FALSE(shared);
 }
 
+TEST_P(ParallelFor, BeginsNoOtherCallForAWorkerWhileItWaitsForALoopWithin) {
+    const int threads = GetParam() > 0 ? GetParam() : hardware_threads();
+    std::vector<std::atomic<int>> calls(static_cast<std::size_t>(threads));
+    std::atomic<bool> shared = false;
+    std::atomic<std::size_t> inner = 0;
+    with_threads(GetParam(), [&] {
+        parallel_for(50, GetParam(), [&](std::size_t, std::size_t worker) {
+            if (calls.at(worker).fetch_add(1) != 0) shared = true;
+            parallel_for(20, GetParam(), [&](std::size_t, std::size_t) {
+                std::this_thread::sleep_for(std::chrono::microseconds(20));
+                ++inner;
+            });
+            --calls[worker];
+        });
+    });
+    EXPECT_FALSE(shared);
+    EXPECT_EQ(inner, 50U * 20U);
+}
+
 TEST_P(ParallelFor, PassesAnExceptionOn) {
     const auto loop = [&] {
         parallel_for(kCount, GetParam(), [](std::size_t i, std::size_t) {

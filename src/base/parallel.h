@@ -18,7 +18,7 @@ void parallel_for(std::size_t count, int threads,
                   const std::function<void(std::size_t i, std::size_t worker)>& body);
 
 /// Calls `body`, in which `parallel_ranges` and `parallel_sort` use up to `threads` threads (0: all
-/// of the machine's).
+/// of the machine's), and `parallel_for` with as many starts no threads of its own.
 void with_threads(int threads, const std::function<void()>& body);
 
 /// Cuts [0, count) into ranges of about `grain` and calls `body(begin, end)` for each, on all

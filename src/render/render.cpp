@@ -51,15 +51,16 @@ Film render(const Scene& scene, const Tracer& tracer, const Settings& settings,
     std::optional<Timer> timer(render_ms);
     validate(settings);
     Film film(settings.size, film_settings(settings, formats));
-    std::optional<Pipeline> pipeline;
+    RenderStats result;
+    // From first to last, so that threads that come for one loop are there for the next.
     with_threads(settings.threads, [&] {
-        pipeline.emplace(
+        const Pipeline pipeline(
             scene, tracer, settings, film,
             LineOutput{.ink = formats.lines && settings.draws_lines(), .drawing = drawing}, true,
             control.ambient, control.cancel);
+        result = pipeline.locates() ? render_edges(pipeline, control)
+                                    : render_stencils(pipeline, control);
     });
-    RenderStats result = pipeline->locates() ? render_edges(*pipeline, control)
-                                             : render_stencils(*pipeline, control);
     timer.reset();
     result.render_ms = render_ms;
     if (stats != nullptr) *stats = result;
