@@ -24,9 +24,7 @@ class LineIds {
     /// line: neither crease nor self-occlusion.
     bool is_ball(std::uint32_t object) const { return objects_[object].ball; }
 
-    void resolve(const HitPacket& hits, Lanes<GeometryId>& ids) const {
-        resolve({&hits, 1}, &ids);
-    }
+    void resolve(const HitPacket& hits, Lanes<GeometryId>& ids) const { resolve({&hits, 1}, &ids); }
     /// The same for packet after packet.
     void resolve(std::span<const HitPacket> hits, Lanes<GeometryId>* ids) const;
     GeometryId resolve(std::uint32_t object, std::uint32_t primitive) const;
