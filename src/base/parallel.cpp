@@ -31,7 +31,7 @@ void run(std::size_t count, const std::function<void(std::size_t, std::size_t)>&
 /// Whether the arena at hand has just so many threads.
 bool has_arena(int threads) {
     return tbb::this_task_arena::current_thread_index() >= 0 &&
-           tbb::this_task_arena::max_concurrency() == threads && threads <= hardware_threads();
+           tbb::this_task_arena::max_concurrency() == threads;
 }
 
 }  // namespace
@@ -49,16 +49,16 @@ void parallel_for(std::size_t count, int threads,
         tbb::this_task_arena::isolate([&] { run(count, body); });
         return;
     }
+    with_threads(threads, [&] { run(count, body); });
+}
+
+void with_threads(int threads, const std::function<void()>& body) {
+    if (threads == 0) threads = hardware_threads();
     // TBB starts as many threads as the machine has; more have to be asked for.
     const tbb::global_control limit(
         tbb::global_control::max_allowed_parallelism,
         static_cast<std::size_t>(std::max(threads, hardware_threads())));
     tbb::task_arena arena(threads);
-    arena.execute([&] { run(count, body); });
-}
-
-void with_threads(int threads, const std::function<void()>& body) {
-    tbb::task_arena arena(threads == 0 ? hardware_threads() : threads);
     arena.execute(body);
 }
 
