@@ -133,7 +133,7 @@ class LineFinder {
             }
         }
         takes_shades_ = front && can_take_shades() && sampler_.want_shades();
-        fills_grid_ = !takes_shades_ || ridges_ != nullptr || crosses_faces();
+        fills_grid_ = !takes_shades_ || crosses_faces();
     }
 
     bool can_take_shades() const;

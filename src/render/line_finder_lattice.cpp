@@ -339,7 +339,7 @@ void LineFinder::put_end(int i, int j) {
 void LineFinder::keep_for_ridges(const Tile& tile) {
     const Timer timer(stats_.lines_ms);
     const Timer phase(stats_.ridges_ms);
-    ridges_->keep(tile, {grid_, blocks_, hits_, normals_, saw_anything_});
+    ridges_->keep(tile, {blocks_, hits_, normals_, saw_anything_});
 }
 
 void LineFinder::shade(std::size_t first, std::size_t count) {

@@ -5,6 +5,7 @@
 #include <numbers>
 #include <variant>
 
+#include "base/multiversion.h"
 #include "lines/short_ridges.h"
 
 namespace ink {
@@ -36,17 +37,26 @@ int step_of(int radius, int per_pixel) {
     return step;
 }
 
-/// Strides that the compiler knows make vector moves.
-template <class T>
-void copy_every(std::size_t stride, const T* from, std::size_t count, T* to) {
-    if (stride == 1) {
-        std::copy_n(from, count, to);
-    } else if (stride == 2) {
-        for (std::size_t i = 0; i < count; ++i) to[i] = from[2 * i];
-    } else {
-        for (std::size_t i = 0; i < count; ++i) to[i] = from[i * stride];
+/// Of a tile's lattice points along an axis, the first node at or after each, within `range`.
+/// Looked up, as blocks ask often and to divide takes long.
+class FirstNodes {
+  public:
+    FirstNodes(int first_point, int first_node, int step, std::pair<int, int> range)
+        : first_point_(first_point), end_(range.second) {
+        const int last_point = (first_node + range.second) * step;
+        for (int point = first_point; point < last_point; ++point) {
+            nodes_.push_back(std::max(range.first, ceiling_of(point, step) - first_node));
+        }
     }
-}
+    int from(int point) const {
+        const auto k = static_cast<std::size_t>(point - first_point_);
+        return k < nodes_.size() ? nodes_[k] : end_;
+    }
+
+  private:
+    int first_point_, end_;
+    std::vector<int> nodes_;
+};
 
 }  // namespace
 
@@ -81,7 +91,6 @@ RidgeSearch::RidgeSearch(const Pipeline& pipeline, const Viewpoint& viewpoint, i
         balls_.push_back(std::holds_alternative<Spheres>(objects[k].shape) &&
                          pipeline.ids.is_ball(k));
     }
-    has_balls_ = std::ranges::find(balls_, true) != balls_.end();
 }
 
 /// Those on lattice points of the tile.
@@ -109,47 +118,36 @@ void RidgeSearch::cut_rim() {
 }
 
 void RidgeSearch::keep(const Tile& tile, const LatticeView& lattice) {
-    const SampleGrid& from = lattice.grid;
     const Nodes nodes = nodes_of(tile);
-    const auto first_column = static_cast<std::size_t>((x0_ + nodes.x0) * step_ - from.x0);
-    const auto step = static_cast<std::size_t>(step_);
     const auto count = static_cast<std::size_t>(std::max(nodes.x1 - nodes.x0, 0));
-    const auto copy_plane = [&](const auto& plane, auto& to) {
-        for (int j = nodes.y0; j < nodes.y1; ++j) {
-            const auto* source =
-                plane.data() + from.index(0, (y0_ + j) * step_ - from.y0) + first_column;
-            copy_every(step, source, count, to.data() + grid_.index(nodes.x0, j));
-        }
-    };
-    copy_plane(from.id, grid_.id);
+    for (int j = nodes.y0; j < nodes.y1; ++j) {
+        std::fill_n(grid_.id.data() + grid_.index(nodes.x0, j), count, kBackground);
+    }
     if (!lattice.saw_anything) return;
-    copy_plane(from.nx, grid_.nx);
-    copy_plane(from.ny, grid_.ny);
-    copy_plane(from.nz, grid_.nz);
-    copy_plane(from.t, grid_.t);
-    if (has_balls_ || pipeline_.shader.has_line_normals()) amend(nodes, lattice);
-}
-
-/// Takes out balls, whose view-dependent curvature grows all the way to their outlines, and puts in
-/// shading normals where the lattice has others.
-void RidgeSearch::amend(const Nodes& nodes, const LatticeView& lattice) {
+    const FirstNodes columns(tile.x0 * per_pixel_, x0_, step_, {nodes.x0, nodes.x1});
+    const FirstNodes rows(tile.y0 * per_pixel_, y0_, step_, {nodes.y0, nodes.y1});
     for (std::size_t k = 0; k < lattice.blocks.size(); ++k) {
         const Block& block = lattice.blocks[k];
-        for (int lane = 0; lane < kLanes; ++lane) {
-            const int x = block.x + block.column(lane);
-            const int y = block.y + block.row(lane);
-            const std::uint32_t object = lattice.hits[k].object[lane];
-            if (object == kNoObject || x % step_ != 0 || y % step_ != 0) continue;
-            const int i = x / step_ - x0_;
-            const int j = y / step_ - y0_;
-            if (i < nodes.x0 || i >= nodes.x1 || j < nodes.y0 || j >= nodes.y1) continue;
-            const std::size_t n = grid_.index(i, j);
-            if (balls_[object]) grid_.id[n] = kBackground;
-            grid_.nx[n] = lattice.normals[k].x[lane];
-            grid_.ny[n] = lattice.normals[k].y[lane];
-            grid_.nz[n] = lattice.normals[k].z[lane];
+        for (int j = rows.from(block.y); j < rows.from(block.y + block.rows); ++j) {
+            const int above = ((y0_ + j) * step_ - block.y) * block.across;
+            for (int i = columns.from(block.x); i < columns.from(block.x + block.columns); ++i) {
+                put(lattice.hits[k], lattice.normals[k], above + (x0_ + i) * step_ - block.x,
+                    grid_.index(i, j));
+            }
         }
     }
+}
+
+/// Balls have none: their view-dependent curvature grows all the way to their outlines.
+INKTRACE_INLINE void RidgeSearch::put(const HitPacket& hits, const NormalPacket& normals, int lane,
+                                      std::size_t node) {
+    const std::uint32_t object = hits.object[lane];
+    if (object == kNoObject || balls_[object] != 0) return;
+    grid_.id[node] = pipeline_.ids.resolve(object, hits.primitive[lane]);
+    grid_.nx[node] = normals.x[lane];
+    grid_.ny[node] = normals.y[lane];
+    grid_.nz[node] = normals.z[lane];
+    grid_.t[node] = hits.t[lane];
 }
 
 void RidgeSearch::trace(const Nodes& strip, Sampler& sampler) {
@@ -168,27 +166,12 @@ void RidgeSearch::trace(const Nodes& strip, Sampler& sampler) {
     std::vector<HitPacket> hits;
     sampler.trace_points(points, hits);
     NormalPacket normals;
-    Lanes<GeometryId> ids;
     for (std::size_t n = 0; n < points.size(); ++n) {
         const std::size_t k = n / kLanes;
         const auto lane = static_cast<int>(n % kLanes);
-        if (lane == 0) {
-            pipeline_.shader.smooth(hits[k], normals);
-            pipeline_.ids.resolve(hits[k], ids);
-        }
-        const std::uint32_t object = hits[k].object[lane];
-        if (object == kNoObject || balls_[object]) continue;
-        put(nodes[sampler.order()[n]], hits[k], normals, lane);
-        grid_.id[nodes[sampler.order()[n]]] = ids[lane];
+        if (lane == 0) pipeline_.shader.smooth(hits[k], normals);
+        put(hits[k], normals, lane, nodes[sampler.order()[n]]);
     }
-}
-
-void RidgeSearch::put(std::size_t node, const HitPacket& hits, const NormalPacket& normals,
-                      int lane) {
-    grid_.nx[node] = normals.x[lane];
-    grid_.ny[node] = normals.y[lane];
-    grid_.nz[node] = normals.z[lane];
-    grid_.t[node] = hits.t[lane];
 }
 
 int RidgeSearch::rows_of_cells() const { return std::max(0, grid_.height - 2 * apron_ - 1); }

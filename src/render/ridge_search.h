@@ -13,16 +13,14 @@
 #include "render/pipeline.h"
 #include "render/tiles.h"
 #include "sampling/sampler.h"
-#include "sampling/samples.h"
 
 namespace ink {
 
 /// Thresholds of the settings in radians a pixel.
 RidgeSettings ridge_settings(const Settings& settings);
 
-/// What a tile's lattice saw: its samples, and the hits and shading normals of its blocks.
+/// What a tile's lattice saw: hits and shading normals of its blocks.
 struct LatticeView {
-    const SampleGrid& grid;
     std::span<const Block> blocks;
     std::span<const HitPacket> hits;
     std::span<const NormalPacket> normals;
@@ -68,9 +66,8 @@ class RidgeSearch {
     int rows_of_cells() const;
     std::size_t bands() const;
     void cut_rim();
-    void amend(const Nodes& nodes, const LatticeView& lattice);
     void trace(const Nodes& strip, Sampler& sampler);
-    void put(std::size_t node, const HitPacket& hits, const NormalPacket& normals, int lane);
+    void put(const HitPacket& hits, const NormalPacket& normals, int lane, std::size_t node);
 
     const Pipeline& pipeline_;
     const Viewpoint& viewpoint_;
@@ -81,11 +78,10 @@ class RidgeSearch {
     int apron_;    ///< nodes
     int x0_, y0_;  ///< lattice point of node (0, 0), in steps
     RidgeGrid grid_;
-    int band_rows_;              ///< of cells that are searched at a time
-    Nodes kept_;                 ///< by tiles
-    std::vector<Nodes> strips_;  ///< the others
-    std::vector<bool> balls_;    ///< objects without ridges: each ID is a ball
-    bool has_balls_;
+    int band_rows_;                               ///< of cells that are searched at a time
+    Nodes kept_;                                  ///< by tiles
+    std::vector<Nodes> strips_;                   ///< the others
+    std::vector<std::uint8_t> balls_;             ///< objects without ridges: each ID is a ball
     std::vector<std::vector<RidgePiece>> found_;  ///< band by band
 };
 
