@@ -106,7 +106,6 @@ std::vector<float> FoldProbe::depths_of(std::vector<std::uint32_t>& folds,
     std::vector<float> depths(folds.size());
     loop(starts.size() - 1, [&](std::size_t n, std::size_t worker) {
         const std::size_t count = starts[n + 1] - starts[n];
-        //        const auto [y, x] = square(folds[starts[n]]);
         measure_depths(std::span(folds).subspan(starts[n], count), worker,
                        std::span(depths).subspan(starts[n], count));
     });
