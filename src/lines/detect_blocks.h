@@ -11,7 +11,7 @@
 namespace ink {
 
 /// Samples of a lattice block by block, as rays travel together: lane i of a block is its point
-/// (i % 4, i / 4)..
+/// (i % 4, i / 4).
 struct SampleBlocks {
     static constexpr std::uint32_t kNothing = 0xFFFFFFFFU;
 

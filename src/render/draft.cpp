@@ -108,25 +108,25 @@ Film render_draft(const Scene& scene, const Tracer& tracer, const Settings& sett
 
     Film film(wanted.size, film_settings(wanted, {}));
     Film small_film(few.size, film_settings(few, {}));
-    std::optional<Pipeline> small;
-    std::optional<Pipeline> large;
     const LineOutput inked{.ink = wanted.draws_lines(), .drawing = nullptr};
     const LineOutput kept{.ink = wanted.draws_lines(),
                           .drawing = nullptr,
                           .segments = true,
                           .enlargement = &enlargement};
     RenderStats result;
+    // From first to last, so that threads that come for one loop are there for the next.
     with_threads(wanted.threads, [&] {
-        small.emplace(scene, tracer, few, small_film, kept, true, control.ambient, control.cancel);
-        if (small->locates()) large.emplace(scene, tracer, wanted, film, inked, false);
-    });
-    if (large) {
-        result = render_fewer_rays(*small, *large, enlargement, control);
-    } else {
-        result = render_stencils(*small, control);
+        const Pipeline small(scene, tracer, few, small_film, kept, true, control.ambient,
+                             control.cancel);
+        if (small.locates()) {
+            const Pipeline large(scene, tracer, wanted, film, inked, false);
+            result = render_fewer_rays(small, large, enlargement, control);
+            return;
+        }
+        result = render_stencils(small, control);
         WorkLoop loop(result.threads, control, 1);
         enlarge_film(small_film, {}, {}, enlargement, loop, nullptr, film);
-    }
+    });
     timer.reset();
     result.render_ms = render_ms;
     if (stats != nullptr) *stats = result;
