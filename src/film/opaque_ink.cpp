@@ -6,6 +6,8 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "base/block_rows-inl.h"
+
 HWY_BEFORE_NAMESPACE();
 namespace ink::HWY_NAMESPACE {
 
@@ -19,30 +21,6 @@ constexpr Pixels kPixels;
 constexpr Integers kIntegers;
 constexpr std::size_t kStep = hn::MaxLanes(Floats());
 constexpr std::uint32_t kAlpha = 0xFF000000U;
-
-/// As many rows of 4 pixels as make a vector, and back.
-template <class Tag>
-HWY_INLINE hn::Vec<Tag> load_rows(Tag tag, const std::uint32_t* from, std::size_t stride) {
-    if constexpr (hn::MaxLanes(Tag()) <= kBlockSide) {
-        return hn::LoadU(tag, from);
-    } else {
-        const hn::Half<Tag> half;
-        const std::size_t next = hn::MaxLanes(Tag()) / (2 * kBlockSide) * stride;
-        return hn::Combine(tag, load_rows(half, from + next, stride),
-                           load_rows(half, from, stride));
-    }
-}
-template <class Tag>
-HWY_INLINE void store_rows(Tag tag, hn::Vec<Tag> value, std::uint32_t* to, std::size_t stride) {
-    if constexpr (hn::MaxLanes(Tag()) <= kBlockSide) {
-        hn::StoreU(value, tag, to);
-    } else {
-        const hn::Half<Tag> half;
-        const std::size_t next = hn::MaxLanes(Tag()) / (2 * kBlockSide) * stride;
-        store_rows(half, hn::LowerHalf(half, value), to, stride);
-        store_rows(half, hn::UpperHalf(half, value), to + next, stride);
-    }
-}
 
 /// One colour of pixels, at its place among their bits.
 template <int kShift>

@@ -81,28 +81,12 @@ HWY_INLINE auto points_below(const Lanes<T>& own, const Lanes<T>& below, int i) 
     return rows_below(hn::CappedTag<T, kLanes>(), own, below, i);
 }
 
-HWY_INLINE Surface own_surface(const BlockView& own, int i) {
-    return {own_points(own.places->x, i),  own_points(own.places->y, i),
-            own_points(own.places->z, i),  own_points(own.normals->x, i),
-            own_points(own.normals->y, i), own_points(own.normals->z, i)};
-}
-
-HWY_INLINE Surface surface_on_right(const BlockView& own, const BlockView& right, int i) {
-    return {points_on_right(own.places->x, right.places->x, i),
-            points_on_right(own.places->y, right.places->y, i),
-            points_on_right(own.places->z, right.places->z, i),
-            points_on_right(own.normals->x, right.normals->x, i),
-            points_on_right(own.normals->y, right.normals->y, i),
-            points_on_right(own.normals->z, right.normals->z, i)};
-}
-
-HWY_INLINE Surface surface_below(const BlockView& own, const BlockView& below, int i) {
-    return {points_below(own.places->x, below.places->x, i),
-            points_below(own.places->y, below.places->y, i),
-            points_below(own.places->z, below.places->z, i),
-            points_below(own.normals->x, below.normals->x, i),
-            points_below(own.normals->y, below.normals->y, i),
-            points_below(own.normals->z, below.normals->z, i)};
+/// `points` takes a plane of a block, and the same of its neighbour.
+template <class Points>
+HWY_INLINE Surface surface_of(const BlockView& own, const BlockView& other, const Points& points) {
+    return {points(own.places->x, other.places->x),   points(own.places->y, other.places->y),
+            points(own.places->z, other.places->z),   points(own.normals->x, other.normals->x),
+            points(own.normals->y, other.normals->y), points(own.normals->z, other.normals->z)};
 }
 
 /// Bits of a block's points that have a neighbour.
@@ -133,9 +117,17 @@ HWY_INLINE void compare_block(const BlockView& own, const BlockView& right, cons
     const std::uint32_t rest_below = hit & has.below & ~along.id & ~shared_below;
     if ((rest_right | rest_below) == 0 || !(settings.depths || settings.normals)) return;
     for (int i = 0; i < kLanes; i += kStep) {
-        const Surface here = own_surface(own, i);
-        compare_surfaces(here, surface_on_right(own, right, i), i, thresholds, across);
-        compare_surfaces(here, surface_below(own, below, i), i, thresholds, along);
+        using Plane = Lanes<float>;
+        const auto here = surface_of(
+            own, own, [i](const Plane& a, const Plane&) HWY_ATTR { return own_points(a, i); });
+        const auto on_right = surface_of(own, right, [i](const Plane& a, const Plane& b) HWY_ATTR {
+            return points_on_right(a, b, i);
+        });
+        const auto under = surface_of(own, below, [i](const Plane& a, const Plane& b) HWY_ATTR {
+            return points_below(a, b, i);
+        });
+        compare_surfaces(here, on_right, i, thresholds, across);
+        compare_surfaces(here, under, i, thresholds, along);
     }
     keep(rest_right, settings, across);
     keep(rest_below, settings, along);

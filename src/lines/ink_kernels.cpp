@@ -9,6 +9,7 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "base/block_rows-inl.h"
 #include "base/vec.h"
 #include "lines/border_code.h"
 #include "lines/coverage_lanes-inl.h"
@@ -185,30 +186,6 @@ HWY_INLINE void draw_blocks(const InkBatch& batch, const Bands& bands, int lane,
         }
         touched = full ? kFull : static_cast<std::uint8_t>(touched | (any ? kTouched : 0));
     });
-}
-
-/// As many rows of 4 pixels as make a vector, and back.
-template <class Tag>
-HWY_INLINE hn::Vec<Tag> load_rows(Tag tag, const float* from, std::size_t stride) {
-    if constexpr (hn::MaxLanes(Tag()) <= kBlockSide) {
-        return hn::LoadU(tag, from);
-    } else {
-        const hn::Half<Tag> half;
-        const std::size_t next = hn::MaxLanes(Tag()) / (2 * kBlockSide) * stride;
-        return hn::Combine(tag, load_rows(half, from + next, stride),
-                           load_rows(half, from, stride));
-    }
-}
-template <class Tag>
-HWY_INLINE void store_rows(Tag tag, hn::Vec<Tag> value, float* to, std::size_t stride) {
-    if constexpr (hn::MaxLanes(Tag()) <= kBlockSide) {
-        hn::StoreU(value, tag, to);
-    } else {
-        const hn::Half<Tag> half;
-        const std::size_t next = hn::MaxLanes(Tag()) / (2 * kBlockSide) * stride;
-        store_rows(half, hn::LowerHalf(half, value), to, stride);
-        store_rows(half, hn::UpperHalf(half, value), to + next, stride);
-    }
 }
 
 /// The same of a narrow one: mostly 4 x 4 pixels hold all that it inks, if they begin where it
