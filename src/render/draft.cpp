@@ -26,66 +26,90 @@ Settings fewer_pixels(const Settings& settings, const Enlargement& enlargement) 
     few.size = enlargement.small();
     few.lattice = 1;
     few.aa = AntiAliasing{AntiAliasing::Kind::none, 1};
+    // Each sees as much of the scene as several of the large picture's: small ones keep what they
+    // need of it in the cache, and share out evenly.
+    constexpr int kTile = 32;
+    few.tile = std::min(few.tile, kTile);
     return few;
 }
 
-/// Segments of the small picture become those of the large one, in the tiles in which its
+/// Lines of the small picture become strokes of the large one, in the tiles in which its
 /// `LineDrawer` looks for them.
-FoundLines enlarged(FoundLines& found, const Enlargement& enlargement, const Edges& large) {
-    FoundLines result;
-    result.tiles.resize(large.search_tiles.size());
-    for (const TileLines& tile : found.tiles) {
-        for (Segment line : tile.segments) {
-            if (!large.wanted.has(line.type)) continue;
-            line.a = enlargement.enlarged(line.a);
-            line.b = enlargement.enlarged(line.b);
-            const Vec2f middle = (line.a + line.b) * 0.5F;
-            result.tiles[large.search_tile_at(middle)].strokes.push_back(
-                make_ink_stroke(line, large.style_of(line)));
-        }
-    }
-    result.thinning = found.thinning;
-    for (LineDensity* density : {&result.thinning.all, &result.thinning.direct}) {
+void enlarge_lines(const FoundLines& found, const Enlargement& enlargement, const Edges& large,
+                   std::vector<TileLines>& tiles) {
+    std::vector<InkStroke> strokes;
+    std::vector<std::size_t> places;  // tiles
+    std::size_t most = found.of_no_tile.size();
+    for (const TileLines& tile : found.tiles) most += tile.segments.size();
+    strokes.reserve(most);
+    places.reserve(most);
+    std::vector<std::size_t> counts(tiles.size());
+    const auto add = [&](Segment line) {
+        if (!large.wanted.has(line.type)) return;
+        line.a = enlargement.enlarged(line.a);
+        line.b = enlargement.enlarged(line.b);
+        strokes.push_back(make_ink_stroke(line, large.style_of(line)));
+        places.push_back(large.search_tile_at((line.a + line.b) * 0.5F));
+        ++counts[places.back()];
+    };
+    for (const TileLines& tile : found.tiles) std::ranges::for_each(tile.segments, add);
+    std::ranges::for_each(found.of_no_tile, add);
+    for (std::size_t k = 0; k < tiles.size(); ++k) tiles[k].strokes.reserve(counts[k]);
+    for (std::size_t k = 0; k < strokes.size(); ++k) tiles[places[k]].strokes.push_back(strokes[k]);
+}
+
+LineThinning enlarged(LineThinning thinning, const Enlargement& enlargement) {
+    for (LineDensity* density : {&thinning.all, &thinning.direct}) {
         density->enlarge(enlargement.factor(), enlargement.small_middle(),
                          enlargement.large_middle());
     }
-    result.tiling = std::move(found.tiling);
-    return result;
+    return thinning;
 }
 
-/// Enlarges the shaded pixels, and sharpens them along the lines.
-void enlarge_film(const Film& small, std::span<const Tile> tiles,
-                  const std::vector<TileLines>& lines, const Enlargement& enlargement,
-                  WorkLoop& loop, FaceTiling* faces, Film& large) {
-    const PixelEnlarger enlarger(enlargement, small.display());
-    constexpr std::size_t kRows = 32;
-    const auto height = static_cast<std::size_t>(enlargement.large().height);
-    loop.run((height + kRows - 1) / kRows, [&](std::size_t band, std::size_t) {
-        for (std::size_t y = band * kRows; y < std::min(height, (band + 1) * kRows); ++y) {
-            enlarger.enlarge_row(static_cast<int>(y), large);
-        }
-    });
-    // Each cell of the lattice belongs to one tile, so threads write different pixels.
-    loop.run(tiles.size(), [&](std::size_t i, std::size_t) {
-        enlarger.sharpen(tiles[i], lines[i].segments, large, faces);
-    });
+/// Enlarges the shaded pixels in bands of rows.
+SideWork enlarging(const PixelEnlarger& enlarger, Film& large) {
+    constexpr int kRows = 32;
+    const int height = large.size().height;
+    return {static_cast<std::size_t>((height + kRows - 1) / kRows), [&, height](std::size_t band) {
+                const int first = static_cast<int>(band) * kRows;
+                for (int y = first; y < std::min(height, first + kRows); ++y) {
+                    enlarger.enlarge_row(y, large);
+                }
+            }};
 }
 
+/// What is for one thread, to mend lines and to enlarge them, is done while the others enlarge
+/// pixels and sharpen them along the lines.
 RenderStats render_fewer_rays(const Pipeline& few, const Pipeline& full,
                               const Enlargement& enlargement, const RenderControl& control) {
     const Edges small(few);
     const Edges large(full);
     const int threads = few.settings.threads > 0 ? few.settings.threads : hardware_threads();
-    WorkLoop loop(threads, control, 2 * small.search_tiles.size() + large.draw_tiles.size());
-    RenderStats stats;
-    FoundLines found = find_lines(small, loop, stats);
-    {
-        const Timer timer(stats.shade_ms);
-        enlarge_film(few.film, small.search_tiles, found.tiles, enlargement, loop,
-                     found.tiling ? &*found.tiling : nullptr, full.film);
-    }
-    add_hidden_strokes(small, found);
-    FoundLines lines = enlarged(found, enlargement, large);
+    const PixelEnlarger enlarger(enlargement, few.film.display());
+    const SideWork rows = enlarging(enlarger, full.film);
+    const std::size_t tiles = small.search_tiles.size();
+    WorkLoop loop(threads, control, 2 * tiles + rows.items + 1 + large.draw_tiles.size());
+    LineSearch search(small, loop);
+    search.search_tiles();
+    search.mend(rows);
+
+    FoundLines& found = search.found();
+    FoundLines lines;
+    lines.tiles.resize(large.search_tiles.size());
+    // Each cell of the lattice belongs to one tile, so threads sharpen different pixels.
+    loop.run(1 + tiles, [&](std::size_t i, std::size_t) {
+        if (i > 0) {
+            enlarger.sharpen(small.search_tiles[i - 1], found.tiles[i - 1].segments, full.film,
+                             found.tiling ? &*found.tiling : nullptr);
+            return;
+        }
+        search.finish();
+        add_hidden_strokes(small, found);
+        enlarge_lines(found, enlargement, large, lines.tiles);
+        lines.thinning = enlarged(std::move(found.thinning), enlargement);
+    });
+    lines.tiling = std::move(found.tiling);
+    RenderStats stats = search.stats();
     draw_lines(large, lines, loop, stats);
     return stats.mean_over(threads);
 }
@@ -124,8 +148,10 @@ Film render_draft(const Scene& scene, const Tracer& tracer, const Settings& sett
             return;
         }
         result = render_stencils(small, control);
-        WorkLoop loop(result.threads, control, 1);
-        enlarge_film(small_film, {}, {}, enlargement, loop, nullptr, film);
+        const PixelEnlarger enlarger(enlargement, small_film.display());
+        const SideWork rows = enlarging(enlarger, film);
+        WorkLoop loop(result.threads, control, rows.items);
+        loop.run(rows.items, [&](std::size_t band, std::size_t) { rows.body(band); });
     });
     timer.reset();
     result.render_ms = render_ms;

@@ -155,8 +155,10 @@ Edges::Edges(const Pipeline& shared)
     no_lines = LineDensity(-margin, -margin, size.width + margin, size.height + margin,
                            ink.widest(), least_side);
     const int side = shared.settings.tile;
-    search_tiles = cut_into_tiles({size.width + 2 * margin, size.height + 2 * margin}, side,
-                                  spare(margin, side));
+    const Size searched{size.width + 2 * margin, size.height + 2 * margin};
+    tiles_across = count_tiles(searched.width, side, spare(margin, side));
+    tiles_down = count_tiles(searched.height, side, spare(margin, side));
+    search_tiles = cut_into_tiles(searched, side, spare(margin, side));
     for (Tile& tile : search_tiles) {
         tile = {tile.x0 - margin, tile.y0 - margin, tile.x1 - margin, tile.y1 - margin};
         const Tile seen{std::max(tile.x0, 0), std::max(tile.y0, 0), std::min(tile.x1, size.width),
@@ -228,20 +230,12 @@ void Edges::apply_distance(Segment& segment) const {
 }
 
 std::size_t Edges::search_tile_at(Vec2f point) const {
-    const int side = pipeline.settings.tile;
-    const auto tile = [&](float at, int size) {
-        const int tiles = count_tiles(size + 2 * margin, side, spare(margin, side));
-        return std::clamp((static_cast<int>(std::floor(at)) + margin) / side, 0, tiles - 1);
+    const auto tile = [&](float at, int tiles) {
+        return std::clamp((static_cast<int>(std::floor(at)) + margin) / pipeline.settings.tile, 0,
+                          tiles - 1);
     };
-    const Size size = pipeline.settings.size;
-    return static_cast<std::size_t>(tile(point.y, size.height)) * search_tiles_across() +
-           static_cast<std::size_t>(tile(point.x, size.width));
-}
-
-std::size_t Edges::search_tiles_across() const {
-    const int side = pipeline.settings.tile;
-    const int width = pipeline.settings.size.width;
-    return static_cast<std::size_t>(count_tiles(width + 2 * margin, side, spare(margin, side)));
+    return static_cast<std::size_t>(tile(point.y, tiles_down)) * search_tiles_across() +
+           static_cast<std::size_t>(tile(point.x, tiles_across));
 }
 
 std::size_t Edges::style_of(LineType type, std::uint32_t object) const {

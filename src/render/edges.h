@@ -41,7 +41,7 @@ struct Edges {
     std::size_t find_style(const Segment& segment) const;
     /// Index of the tile that a point was searched in.
     std::size_t search_tile_at(Vec2f point) const;
-    std::size_t search_tiles_across() const;
+    std::size_t search_tiles_across() const { return static_cast<std::size_t>(tiles_across); }
     /// What all search tiles cover.
     Tile search_area() const {
         const Tile& last = search_tiles.back();
@@ -108,6 +108,7 @@ struct Edges {
     LineDensity no_lines;
     Viewpoint viewpoint;
     int margin;  ///< pixels searched beyond the film's edge, for lines that reach in
+    int tiles_across, tiles_down;  ///< that are searched
     std::vector<Tile> search_tiles, draw_tiles;
     /// The surfaces behind the nearest ones, layer by layer; empty unless hidden lines are wanted.
     std::vector<std::unique_ptr<FrameTracer>> behind;

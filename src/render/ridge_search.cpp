@@ -67,6 +67,17 @@ RidgeSettings ridge_settings(const Settings& settings) {
     return {static_cast<float>(turn), static_cast<float>(2.0 * turn)};
 }
 
+struct RidgeSearch::Worker {
+    explicit Worker(const RidgeSearch& search)
+        : sampler(*search.pipeline_.frame, search.pipeline_.camera),
+          field(search.grid_, search.viewpoint_, search.pattern_,
+                ridge_settings(search.pipeline_.settings)) {}
+
+    Sampler sampler;
+    RidgeField field;
+    RenderStats stats;
+};
+
 RidgeSearch::RidgeSearch(const Pipeline& pipeline, const Viewpoint& viewpoint, int per_pixel,
                          const Tile& area, int threads)
     : pipeline_(pipeline),
@@ -84,7 +95,9 @@ RidgeSearch::RidgeSearch(const Pipeline& pipeline, const Viewpoint& viewpoint, i
              (static_cast<float>(y0_ * step_) + 0.5F) / static_cast<float>(per_pixel)},
             static_cast<float>(step_) / static_cast<float>(per_pixel)),
       band_rows_(band_rows_of(rows_of_cells(), threads)),
-      kept_(nodes_of(area)) {
+      kept_(nodes_of(area)),
+      found_(static_cast<std::size_t>((rows_of_cells() + band_rows_ - 1) / band_rows_)),
+      workers_(static_cast<std::size_t>(threads)) {
     cut_rim();
     const auto& objects = pipeline.scene.objects();
     for (std::uint32_t k = 0; k < objects.size(); ++k) {
@@ -92,6 +105,8 @@ RidgeSearch::RidgeSearch(const Pipeline& pipeline, const Viewpoint& viewpoint, i
                          pipeline.ids.is_ball(k));
     }
 }
+
+RidgeSearch::~RidgeSearch() = default;
 
 /// Those on lattice points of the tile.
 RidgeSearch::Nodes RidgeSearch::nodes_of(const Tile& pixels) const {
@@ -176,45 +191,35 @@ void RidgeSearch::trace(const Nodes& strip, Sampler& sampler) {
 
 int RidgeSearch::rows_of_cells() const { return std::max(0, grid_.height - 2 * apron_ - 1); }
 
-std::size_t RidgeSearch::bands() const {
-    return static_cast<std::size_t>((rows_of_cells() + band_rows_ - 1) / band_rows_);
+RidgeSearch::Worker& RidgeSearch::worker_of(std::size_t thread) {
+    if (!workers_[thread]) workers_[thread] = std::make_unique<Worker>(*this);
+    return *workers_[thread];
 }
 
-void RidgeSearch::find(WorkLoop& loop, RenderStats& stats) {
-    struct Worker {
-        Worker(const RidgeSearch& search)
-            : sampler(*search.pipeline_.frame, search.pipeline_.camera),
-              field(search.grid_, search.viewpoint_, search.pattern_,
-                    ridge_settings(search.pipeline_.settings)) {}
-        Sampler sampler;
-        RidgeField field;
-        RenderStats stats;
-    };
-    std::vector<std::unique_ptr<Worker>> workers(static_cast<std::size_t>(loop.threads()));
-    const auto worker_of = [&](std::size_t k) -> Worker& {
-        if (!workers[k]) workers[k] = std::make_unique<Worker>(*this);
-        return *workers[k];
-    };
-    loop.run(strips_.size(), [&](std::size_t k, std::size_t thread) {
-        Worker& worker = worker_of(thread);
-        const Timer timer(worker.stats.lines_ms);
-        const Timer phase(worker.stats.ridges_ms);
-        trace(strips_[k], worker.sampler);
-    });
-    found_.resize(bands());
-    loop.run(bands(), [&](std::size_t k, std::size_t thread) {
-        Worker& worker = worker_of(thread);
-        const Timer timer(worker.stats.lines_ms);
-        const Timer phase(worker.stats.ridges_ms);
-        const int first = apron_ + static_cast<int>(k) * band_rows_;
-        const int last = std::min(first + band_rows_, grid_.height - apron_ - 1);
-        worker.field.find(first, last, found_[k]);
-    });
-    for (const auto& worker : workers) {
+void RidgeSearch::trace_strip(std::size_t strip, std::size_t thread) {
+    Worker& worker = worker_of(thread);
+    const Timer timer(worker.stats.lines_ms);
+    const Timer phase(worker.stats.ridges_ms);
+    trace(strips_[strip], worker.sampler);
+}
+
+void RidgeSearch::search_band(std::size_t band, std::size_t thread) {
+    Worker& worker = worker_of(thread);
+    const Timer timer(worker.stats.lines_ms);
+    const Timer phase(worker.stats.ridges_ms);
+    const int first = apron_ + static_cast<int>(band) * band_rows_;
+    const int last = std::min(first + band_rows_, grid_.height - apron_ - 1);
+    worker.field.find(first, last, found_[band]);
+}
+
+RenderStats RidgeSearch::stats() const {
+    RenderStats total;
+    for (const auto& worker : workers_) {
         if (!worker) continue;
-        worker->stats.rays = worker->sampler.rays();
-        stats += worker->stats;
+        total += worker->stats;
+        total.rays += worker->sampler.rays();
     }
+    return total;
 }
 
 std::vector<RidgePiece> RidgeSearch::pieces_beside(const LineMask& others) {

@@ -37,14 +37,18 @@ class RidgeSearch {
     /// What is found does not depend on the number of threads.
     RidgeSearch(const Pipeline& pipeline, const Viewpoint& viewpoint, int per_pixel,
                 const Tile& area, int threads);
+    ~RidgeSearch();
 
     /// Threads may keep different tiles at the same time.
     void keep(const Tile& tile, const LatticeView& lattice);
 
-    /// Items of work in `find`.
-    std::size_t items() const { return strips_.size() + bands(); }
-    /// After all tiles.
-    void find(WorkLoop& loop, RenderStats& stats);
+    /// Items of work, after all tiles: the rim in so many strips, then the grid in bands. Threads
+    /// may do different ones at the same time.
+    std::size_t strips() const { return strips_.size(); }
+    void trace_strip(std::size_t strip, std::size_t thread);
+    std::size_t bands() const { return found_.size(); }
+    void search_band(std::size_t band, std::size_t thread);
+
     /// Calls `visit` with what was found, but for pieces so near to other lines that they would
     /// touch them, and for what is shorter in all than the neighbourhood's radius: more often than
     /// not it is noise of a mesh.
@@ -56,7 +60,12 @@ class RidgeSearch {
         }
     }
 
+    /// Of all threads.
+    RenderStats stats() const;
+
   private:
+    /// What a thread works with.
+    struct Worker;
     /// Nodes [x0, x1) x [y0, y1) of the grid.
     using Nodes = Tile;
 
@@ -64,8 +73,8 @@ class RidgeSearch {
     Segment segment_of(const RidgePiece& piece) const;
     Nodes nodes_of(const Tile& pixels) const;
     int rows_of_cells() const;
-    std::size_t bands() const;
     void cut_rim();
+    Worker& worker_of(std::size_t thread);
     void trace(const Nodes& strip, Sampler& sampler);
     void put(const HitPacket& hits, const NormalPacket& normals, int lane, std::size_t node);
 
@@ -78,11 +87,12 @@ class RidgeSearch {
     int apron_;    ///< nodes
     int x0_, y0_;  ///< lattice point of node (0, 0), in steps
     RidgeGrid grid_;
-    int band_rows_;                               ///< of cells that are searched at a time
-    Nodes kept_;                                  ///< by tiles
-    std::vector<Nodes> strips_;                   ///< the others
-    std::vector<std::uint8_t> balls_;             ///< objects without ridges: each ID is a ball
-    std::vector<std::vector<RidgePiece>> found_;  ///< band by band
+    int band_rows_;                                 ///< of cells that are searched at a time
+    Nodes kept_;                                    ///< by tiles
+    std::vector<Nodes> strips_;                     ///< the others
+    std::vector<std::uint8_t> balls_;               ///< objects without ridges: each ID is a ball
+    std::vector<std::vector<RidgePiece>> found_;    ///< band by band
+    std::vector<std::unique_ptr<Worker>> workers_;  ///< a thread
 };
 
 }  // namespace ink

@@ -1,0 +1,184 @@
+#include "render/line_search.h"
+
+#include "render/line_mask.h"
+#include "render/mend_lines.h"
+
+namespace ink {
+
+namespace {
+
+/// Where there are lines on surfaces seen directly, but not between faces, so near that a ridge
+/// beside them would touch them.
+LineMask mask_of(const Edges& edges, const std::vector<TileLines>& found) {
+    LineMask mask(edges.search_area());
+    const auto mark = [&](Vec2f a, Vec2f b, std::size_t style) {
+        constexpr float kBetween = 0.5F;  // what the eye does not tell from none, pixels
+        const float ridge = edges.ink.styles[edges.style_of(LineType::ridge, 0)].width_px;
+        mask.mark((a + b) * 0.5F, 0.5F * (edges.ink.styles[style].width_px + ridge) + kBetween);
+    };
+    for (const TileLines& tile : found) {
+        for (const Segment& segment : tile.segments) {
+            if (segment.level > 0 || segment.type == LineType::mesh) continue;
+            if (edges.wanted.has(segment.type)) mark(segment.a, segment.b, edges.style_of(segment));
+        }
+        if (edges.keeps_segments()) continue;
+        for (const InkStroke& stroke : tile.strokes) {
+            const auto type = static_cast<LineType>(stroke.style % kLineTypes);
+            if (stroke.direct && type != LineType::mesh) mark(stroke.a, stroke.b, stroke.style);
+        }
+    }
+    return mask;
+}
+
+/// Puts a line that was found in the whole picture where tiles that draw look for it; those of a
+/// draft are enlarged first.
+void keep(const Edges& edges, const Segment& line, FoundLines& found) {
+    if (edges.pipeline.lines.enlargement != nullptr) {
+        found.of_no_tile.push_back(line);
+        return;
+    }
+    TileLines& tile = found.tiles[edges.search_tile_at((line.a + line.b) * 0.5F)];
+    if (edges.wants_segments()) tile.segments.push_back(line);
+    if (edges.draw_lines) tile.strokes.push_back(make_ink_stroke(line, edges.style_of(line)));
+}
+
+/// From what all workers have counted, and the ridges.
+LineThinning thinning_of(const Edges& edges,
+                         const std::vector<std::unique_ptr<LineFinder>>& finders,
+                         const LineDensity& ridges) {
+    LineThinning thinning{ridges, ridges, static_cast<float>(edges.pipeline.settings.line_density)};
+    const bool goes_on = edges.pipeline.goes_on();
+    for (const auto& finder : finders) {
+        if (!finder) continue;
+        thinning.all += finder->density();
+        thinning.direct += goes_on ? finder->direct_density() : finder->density();
+    }
+    thinning.all.finish();
+    thinning.direct.finish();
+    return thinning;
+}
+
+}  // namespace
+
+LineSearch::LineSearch(const Edges& edges, WorkLoop& loop)
+    : edges_(edges),
+      loop_(loop),
+      finders_(static_cast<std::size_t>(loop.threads())),
+      behind_(finders_.size()) {
+    const Pipeline& pipeline = edges.pipeline;
+    found_.tiles.resize(edges.search_tiles.size());
+    found_.toned.resize(edges.search_tiles.size());
+    found_.hidden.resize(edges.search_tiles.size());
+    if (edges.wants_faces() && pipeline.lines.enlargement != nullptr) {
+        found_.tiling.emplace(pipeline.scene, pipeline.camera.projection(),
+                              *pipeline.lines.enlargement);
+    } else if (edges.draws_borders()) {
+        found_.borders.emplace(pipeline.settings.size, edges.ink.reach(),
+                               edges.ink.has_several_inks());
+    } else if (edges.wants_faces()) {
+        found_.faces.emplace(pipeline.scene, pipeline.settings.size, edges.q);
+    }
+    if (edges.wants_ridges()) {
+        ridges_.emplace(pipeline, edges.viewpoint, edges.q, edges.search_area(), loop.threads());
+    }
+}
+
+LineFinder& LineSearch::finder(std::size_t worker) {
+    std::unique_ptr<LineFinder>& own = finders_[worker];
+    if (!own) {
+        const FaceMaps maps{found_.faces ? &*found_.faces : nullptr,
+                            found_.borders ? &*found_.borders : nullptr,
+                            found_.tiling ? &*found_.tiling : nullptr};
+        own = std::make_unique<LineFinder>(edges_, maps, ridges_ ? &*ridges_ : nullptr);
+    }
+    return *own;
+}
+
+void LineSearch::search_tiles() {
+    loop_.run(edges_.search_tiles.size(), [&](std::size_t i, std::size_t worker) {
+        LineFinder& own = finder(worker);
+        found_.tiles[i] = own.search(edges_.search_tiles[i]);
+        if (edges_.tones) found_.toned[i] = own.take_toned();
+        if (edges_.behind.empty()) return;
+        if (!behind_[worker]) behind_[worker] = std::make_unique<HiddenLineFinder>(edges_);
+        found_.hidden[i] = behind_[worker]->search(edges_.search_tiles[i], own);
+    });
+}
+
+/// Mending is for one thread for most of the time: the others find ridges, and put the pixels on
+/// the film to which lines of several tiles add.
+void LineSearch::mend(const SideWork& beside) {
+    if (ridges_) {
+        loop_.expect(ridges_->strips() + ridges_->bands());
+        loop_.run(ridges_->strips(),
+                  [&](std::size_t k, std::size_t worker) { ridges_->trace_strip(k, worker); });
+    }
+    std::vector<const Fringe*> fringes;
+    if (edges_.smooth_shading) {
+        fringes.reserve(found_.tiles.size());
+        for (const TileLines& tile : found_.tiles) fringes.push_back(&tile.fringe);
+    }
+    const ColorPacket& empty = edges_.pipeline.shader.background();
+    const PixelColor background{empty.r[0], empty.g[0], empty.b[0], empty.a[0]};
+    const std::size_t mends = edges_.mends_lines() ? 1 : 0;
+    const std::size_t bands = ridges_ ? ridges_->bands() : 0;
+    loop_.expect(mends);
+    loop_.run(mends + bands + fringes.size() + beside.items,
+              [&](std::size_t i, std::size_t worker) {
+                  if (i < mends) {
+                      serial_ += mend_lines(edges_, finders_, found_.tiles, found_.toned);
+                  } else if (i -= mends; i < bands) {
+                      ridges_->search_band(i, worker);
+                  } else if (i -= bands; i < fringes.size()) {
+                      finish_fringe(edges_.search_tiles, fringes, edges_.search_tiles_across(), i,
+                                    background, edges_.pipeline.film);
+                  } else {
+                      beside.body(i - fringes.size());
+                  }
+              });
+}
+
+/// Returns what they add to the density of lines.
+LineDensity LineSearch::take_ridges() {
+    LineDensity density = edges_.no_lines;
+    if (!ridges_) return density;
+    double ms = 0.0;
+    {
+        const Timer timer(ms);
+        ridges_->take(mask_of(edges_, found_.tiles), [&](Segment& ridge) {
+            edges_.apply_distance(ridge);
+            const InkStroke stroke = make_ink_stroke(ridge, edges_.style_of(ridge));
+            density.add(stroke, edges_.ink.styles[stroke.style].width_px * stroke.width_scale);
+            keep(edges_, ridge, found_);
+        });
+    }
+    const bool others_wait = edges_.pipeline.lines.enlargement == nullptr;
+    serial_.lines_ms += others_wait ? ms * loop_.threads() : ms;
+    serial_.ridges_ms += others_wait ? ms * loop_.threads() : ms;
+    return density;
+}
+
+void LineSearch::finish() { found_.thinning = thinning_of(edges_, finders_, take_ridges()); }
+
+RenderStats LineSearch::stats() const {
+    RenderStats total = serial_;
+    for (const auto& finder : finders_) {
+        if (finder) total += finder->stats();
+    }
+    for (const auto& finder : behind_) {
+        if (finder) total += finder->stats();
+    }
+    if (ridges_) total += ridges_->stats();
+    return total;
+}
+
+void add_hidden_strokes(const Edges& edges, FoundLines& found) {
+    if (!edges.draw_lines || edges.behind.empty()) return;
+    std::vector<Segment> lines;
+    for (const std::vector<Segment>& tile : found.hidden) {
+        lines.insert(lines.end(), tile.begin(), tile.end());
+    }
+    for (const Segment& stroke : hidden_strokes(edges, lines)) keep(edges, stroke, found);
+}
+
+}  // namespace ink
