@@ -51,17 +51,14 @@ struct Mended {
     std::vector<Segment> lines;  ///< as they are drawn
 };
 
-Mended mend(const World& world, float width) {
+Mended mend(const SampleFunction& sample, const World& world, float width) {
     Mended mended{search(world, 1), {}, {}};
     Viewpoint viewpoint;
     viewpoint.dir = {0, 0, -1};
     viewpoint.parallel = true;
     viewpoint.origin = {{0, 0, 2}, {world.unit, 0, 0}, {0, -world.unit, 0}};
     viewpoint.direction = {{0, 0, -1}, {}, {}};
-    mended.repairs = mend_folds(mended.found.segments, viewpoint, 1.0F, width,
-                                [&](std::span<const Vec2f> points, std::span<Sample> out) {
-                                    std::ranges::transform(points, out.begin(), world);
-                                });
+    mended.repairs = mend_folds(mended.found.segments, viewpoint, 1.0F, width, sample);
     mended.lines = mended.found.segments;
     for (auto k = mended.repairs.crumbs.rbegin(); k != mended.repairs.crumbs.rend(); ++k) {
         mended.lines.erase(mended.lines.begin() + static_cast<std::ptrdiff_t>(*k));
@@ -69,6 +66,12 @@ Mended mend(const World& world, float width) {
     mended.lines.insert(mended.lines.end(), mended.repairs.bridges.begin(),
                         mended.repairs.bridges.end());
     return mended;
+}
+
+Mended mend(const World& world, float width) {
+    return mend([&](std::span<const Vec2f> points,
+                    std::span<Sample> out) { std::ranges::transform(points, out.begin(), world); },
+                world, width);
 }
 
 TEST(BrokenFold, IsOneLineWhereTheSurfaceStaysSteep) {
@@ -87,6 +90,22 @@ TEST(BrokenFold, IsOneLineWhereTheSurfaceStaysSteep) {
     whole.segments = mended.lines;
     EXPECT_NEAR(total_length(whole), 38.0, 2.5);
     EXPECT_EQ(loose_ends(whole).size(), 2U) << list(loose_ends(whole));
+}
+
+TEST(BrokenFold, IsFollowedFromOneOfTheTwoEndsOfAGap) {
+    constexpr double kFrom = 13.0;
+    constexpr double kTo = 20.0;
+    const World world{{broken_fold(0.1, 40.0, {{5, kFrom}, {kTo, 31}})}};
+    int steps = 0;
+    const auto sample = [&](std::span<const Vec2f> points, std::span<Sample> out) {
+        std::ranges::transform(points, out.begin(), world);
+        const bool in_gap = std::ranges::all_of(
+            points, [&](Vec2f p) { return p.x > kFrom + 0.5 && p.x < kTo - 0.5; });
+        steps += in_gap ? 1 : 0;
+    };
+    EXPECT_FALSE(mend(sample, world, 2.0F).repairs.bridges.empty());
+    EXPECT_GT(steps, 0);
+    EXPECT_LE(steps, static_cast<int>(kTo - kFrom));
 }
 
 TEST(BrokenFold, StaysBrokenWhereTheSurfaceFacesTheViewer) {

@@ -73,6 +73,12 @@ class FoldMender {
     std::uint32_t root(std::uint32_t k) const { return graph_.root(k); }
     bool is_fold(std::uint32_t k) const { return graph_.is_fold(k); }
 
+    /// Of an end of a fold.
+    template <class End>
+    static std::size_t number(const End& end) {
+        return 2 * std::size_t{end.fold} + (end.at_b ? 1 : 0);
+    }
+
     /// The nearest line of another piece, no farther away than most of a lattice cell.
     std::uint32_t line_near(Vec2f point, std::uint32_t piece) const {
         float least = 0.75F * spacing_;
@@ -129,9 +135,8 @@ class FoldMender {
     void pass_on() {
         constexpr std::uint32_t kOnNothing = kNone - 1;
         std::vector<std::uint32_t> lines_at(2 * lines_.size(), kNone);
-        for (const FoldHang& hang : endings_.hangs)
-            lines_at[2 * hang.fold + (hang.at_b ? 1 : 0)] = hang.line;
-        for (const LooseEnd& end : ends_) lines_at[2 * end.fold + (end.at_b ? 1 : 0)] = kOnNothing;
+        for (const FoldHang& hang : endings_.hangs) lines_at[number(hang)] = hang.line;
+        for (const LooseEnd& end : ends_) lines_at[number(end)] = kOnNothing;
         for (FoldHang& hang : endings_.hangs) {
             if (!is_fold(hang.line)) continue;
             const Vec2f from = hang.at_b ? lines_[hang.fold].b : lines_[hang.fold].a;
@@ -153,14 +158,49 @@ class FoldMender {
 
     static constexpr int kStepsInArea = 8;
 
-    /// End by end: a packet of rays that lie close together meets little of the scene.
+    /// Of two ends that lie on one valley, each would come to the other. So first those that go to
+    /// the right, then those that nothing has come to.
     void follow_valleys() {
-        loop_(ends_.size(), [&](std::size_t k, std::size_t worker) {
-            for (int gone = 0; ends_[k].open; ++gone) {
-                if (gone % kStepsInArea == 0) look_ahead(ends_[k], worker);
-                step(ends_[k], worker);
+        const auto goes_right = [](const LooseEnd& end) {
+            return end.way.x > 0.0F || (end.way.x == 0.0F && end.way.y > 0.0F);
+        };
+        std::vector<std::uint32_t> first;
+        std::vector<std::uint32_t> second;
+        for (std::uint32_t k = 0; k < ends_.size(); ++k) {
+            (goes_right(ends_[k]) ? first : second).push_back(k);
+        }
+        follow(first);
+        take_arrivals(first);
+        std::erase_if(second, [&](std::uint32_t k) { return ends_[k].reached != kNone; });
+        follow(second);
+        take_arrivals(second);
+    }
+
+    /// End by end: a packet of rays that lie close together meets little of the scene.
+    void follow(std::span<const std::uint32_t> ends) {
+        loop_(ends.size(), [&](std::size_t n, std::size_t worker) {
+            LooseEnd& end = ends_[ends[n]];
+            for (int gone = 0; end.open; ++gone) {
+                if (gone % kStepsInArea == 0) look_ahead(end, worker);
+                step(end, worker);
             }
         });
+    }
+
+    /// An end that a way has come to is where that line goes on.
+    void take_arrivals(std::span<const std::uint32_t> followed) {
+        std::vector<std::uint32_t> ends_at(2 * lines_.size(), kNone);
+        for (std::uint32_t k = 0; k < ends_.size(); ++k) ends_at[number(ends_[k])] = k;
+        for (const std::uint32_t k : followed) {
+            const std::uint32_t target = ends_[k].reached;
+            if (target == kNone || !is_fold(target)) continue;
+            for (const std::uint32_t met : {ends_at[2 * target], ends_at[2 * target + 1]}) {
+                if (met == kNone || ends_[met].reached != kNone) continue;
+                if (length(ends_[met].point - ends_[k].path.back()) >= spacing_) continue;
+                ends_[met].reached = ends_[k].fold;
+                ends_[met].path.clear();
+            }
+        }
     }
 
     /// Enters what the next few steps see, so that they share what is found there.
