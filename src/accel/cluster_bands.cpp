@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "base/multiversion.h"
+#include "base/parallel.h"
 
 namespace ink {
 
@@ -47,10 +48,22 @@ ClusterBands::ClusterBands(const BoundsPyramid& pyramid, std::size_t count, Vec2
       of_column_(kBands * words_),
       of_row_(kBands * words_),
       cover_(centre) {
-    sort(pyramid);
     lay_axes(pyramid.at(pyramid.top(), 0), centre);
-    for (std::size_t word = 0; word < words_; ++word) mark_bands(word);
-    for (std::size_t k = 0; k < bounds_.size(); ++k) cover_.add(bounds_[k], used(k));
+    constexpr std::size_t kPackets = 32;
+    constexpr std::size_t kWords = 8;
+    parallel_ranges(bounds_.size(), kPackets, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t k = begin; k < end; ++k) pyramid.at(0, k);  // projects it
+    });
+    parallel_ranges(2, 1, [&](std::size_t begin, std::size_t end) {
+        if (begin == 0) sort(pyramid);
+        if (end == 2) cover(pyramid);
+    });
+    parallel_ranges(words_, kWords, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t word = begin; word < end; ++word) {
+            take_bounds(pyramid, word);
+            mark_bands(word);
+        }
+    });
 }
 
 /// How many clusters a packet holds.
@@ -165,12 +178,23 @@ void ClusterBands::sort(const BoundsPyramid& pyramid) {
     }
     radix_sort(entries);
     for (std::size_t place = 0; place < entries.size(); ++place) {
-        const std::uint32_t cluster = entries[place].cluster;
-        order_[place] = cluster;
+        order_[place] = entries[place].cluster;
+    }
+}
+
+/// Of 64 places, in order.
+void ClusterBands::take_bounds(const BoundsPyramid& pyramid, std::size_t word) {
+    for (std::size_t place = word * 64; place < std::min(word * 64 + 64, order_.size()); ++place) {
+        const std::uint32_t cluster = order_[place];
         const BoundsPacket& from = pyramid.at(0, cluster / kLanes);
         from.copy(static_cast<int>(cluster % kLanes), bounds_[place / kLanes],
                   static_cast<int>(place % kLanes));
     }
+}
+
+/// In any order.
+void ClusterBands::cover(const BoundsPyramid& pyramid) {
+    for (std::size_t k = 0; k < bounds_.size(); ++k) cover_.add(pyramid.at(0, k), used(k));
 }
 
 /// Over the part of the picture that the clusters reach into.
