@@ -10,6 +10,7 @@
 #include "accel/bounds_pyramid.h"
 #include "accel/cluster_bands.h"
 #include "accel/clusters.h"
+#include "accel/tracer.h"
 #include "camera/camera.h"
 #include "scenes.h"
 
@@ -76,6 +77,16 @@ TEST(Candidates, ReachNoBoxBetweenTwoObjects) {
     EXPECT_TRUE(candidates.reach({-128, 0, -2, 2, kInfinity}));
     EXPECT_TRUE(candidates.reach({0, 128, -2, 2, kInfinity}));
     EXPECT_FALSE(candidates.reach({-8, 8, -8, 8, kInfinity}));
+}
+
+TEST(ScreenFrame, SeesNothingBetweenTwoObjects) {
+    const Scene scene({sphere_object({{{-1, 0, 0}, 0.1F}}), sphere_object({{{1, 0, 0}, 0.1F}})});
+    const Camera camera(scene, {}, {256, 256});
+    const auto tracer = make_tracer(scene);
+    const auto frame = tracer->frame(camera.projection(), 1);
+    EXPECT_TRUE(frame->may_see({0, 126, 128, 130}));
+    EXPECT_TRUE(frame->may_see({128, 126, 256, 130}));
+    EXPECT_FALSE(frame->may_see({120, 120, 136, 136}));
 }
 
 TEST(ClusterBands, SayOfARowOfBoxesWhatTheySayOfEach) {

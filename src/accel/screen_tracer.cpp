@@ -329,6 +329,9 @@ class ScreenFrameTracer final : public FrameTracer {
         return std::make_unique<ScreenTileTracer>(view_);
     }
 
+    bool may_see(const ScreenBox& box) const override {
+        return !view_.bands || view_.bands->reach(view_.window(box));
+    }
     bool measures_borders() const override { return true; }
     bool shades_triangles() const override {
         return std::ranges::all_of(view_.clusters.clusters, [](const Cluster& cluster) {

@@ -102,6 +102,9 @@ class MergedFrameTracer final : public FrameTracer {
     std::unique_ptr<TileTracer> tile_tracer() const override {
         return std::make_unique<MergedTileTracer>(first_->tile_tracer(), second_->tile_tracer());
     }
+    bool may_see(const ScreenBox& box) const override {
+        return first_->may_see(box) || second_->may_see(box);
+    }
 
   private:
     std::unique_ptr<FrameTracer> first_, second_;

@@ -181,6 +181,9 @@ class FrameTracer {
   public:
     virtual ~FrameTracer() = default;
     virtual std::unique_ptr<TileTracer> tile_tracer() const = 0;
+    /// False only if no ray through a point of the box hits anything; true where that would take
+    /// long to find out.
+    virtual bool may_see(const ScreenBox& /*box*/) const { return true; }
     /// Whether its tile tracers can tell how far points are from the borders of triangles.
     virtual bool measures_borders() const { return false; }
     /// Whether there is nothing but triangles, and they can tell by which normals to shade these.

@@ -88,7 +88,7 @@ RenderStats render_fewer_rays(const Pipeline& few, const Pipeline& full,
     const PixelEnlarger enlarger(enlargement, few.film.display());
     const SideWork rows = enlarging(enlarger, full.film);
     const std::size_t tiles = small.search_tiles.size();
-    WorkLoop loop(threads, control, 2 * tiles + rows.items + 1 + large.draw_tiles.size());
+    WorkLoop loop(threads, control, tiles + rows.items + 1 + large.draw_tiles.size());
     LineSearch search(small, loop);
     search.search_tiles();
     search.mend(rows);

@@ -88,8 +88,7 @@ RenderStats render_edges(const Pipeline& pipeline, const RenderControl& control)
     const Edges edges(pipeline);
     const int threads =
         pipeline.settings.threads > 0 ? pipeline.settings.threads : hardware_threads();
-    const std::size_t fringes = edges.smooth_shading ? edges.search_tiles.size() : 0;
-    WorkLoop loop(threads, control, edges.search_tiles.size() + fringes + edges.draw_tiles.size());
+    WorkLoop loop(threads, control, edges.draw_tiles.size());
     RenderStats stats;
     LineSearch search(edges, loop);
     search.search_tiles();

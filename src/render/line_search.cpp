@@ -30,6 +30,14 @@ LineMask mask_of(const Edges& edges, const std::vector<TileLines>& found) {
     return mask;
 }
 
+/// False only if the tile's lattice sees nothing.
+bool may_see(const Edges& edges, const Tile& tile) {
+    // As far as tiles trace beyond their borders, and no less.
+    return edges.pipeline.frame->may_see({static_cast<float>(tile.x0), static_cast<float>(tile.y0),
+                                          static_cast<float>(tile.x1 + kBlockSide),
+                                          static_cast<float>(tile.y1 + kBlockSide)});
+}
+
 /// Puts a line that was found in the whole picture where tiles that draw look for it; those of a
 /// draft are enlarged first.
 void keep(const Edges& edges, const Segment& line, FoundLines& found) {
@@ -81,6 +89,24 @@ LineSearch::LineSearch(const Edges& edges, WorkLoop& loop)
     if (edges.wants_ridges()) {
         ridges_.emplace(pipeline, edges.viewpoint, edges.q, edges.search_area(), loop.threads());
     }
+    // Ridges and drafts need all tiles before lines are mended.
+    const bool puts_off = edges.mends_lines() && !ridges_ && pipeline.lines.enlargement == nullptr;
+    for (std::size_t k = 0; k < edges.search_tiles.size(); ++k) {
+        (puts_off && !may_see(edges, edges.search_tiles[k]) ? empty_ : seeing_).push_back(k);
+    }
+    if (edges.smooth_shading) {
+        fringes_.reserve(found_.tiles.size());
+        for (const TileLines& tile : found_.tiles) fringes_.push_back(&tile.fringe);
+    }
+    loop.expect(items());
+}
+
+/// Calls of the loop's body, but for work beside.
+std::size_t LineSearch::items() const {
+    const std::size_t mends = !edges_.mends_lines() ? 0 : empty_.empty() ? 1 : 2;
+    const std::size_t ridges = ridges_ ? ridges_->strips() + ridges_->bands() : 0;
+    return seeing_.size() + ridges + mends + (fringes_.empty() ? 0 : seeing_.size()) +
+           empty_.size();
 }
 
 LineFinder& LineSearch::finder(std::size_t worker) {
@@ -95,47 +121,66 @@ LineFinder& LineSearch::finder(std::size_t worker) {
 }
 
 void LineSearch::search_tiles() {
-    loop_.run(edges_.search_tiles.size(), [&](std::size_t i, std::size_t worker) {
-        LineFinder& own = finder(worker);
-        found_.tiles[i] = own.search(edges_.search_tiles[i]);
-        if (edges_.tones) found_.toned[i] = own.take_toned();
-        if (edges_.behind.empty()) return;
-        if (!behind_[worker]) behind_[worker] = std::make_unique<HiddenLineFinder>(edges_);
-        found_.hidden[i] = behind_[worker]->search(edges_.search_tiles[i], own);
-    });
+    loop_.run(seeing_.size(),
+              [&](std::size_t k, std::size_t worker) { search(seeing_[k], worker); });
 }
 
-/// Mending is for one thread for most of the time: the others find ridges, and put the pixels on
-/// the film to which lines of several tiles add.
+void LineSearch::search(std::size_t tile, std::size_t worker) {
+    LineFinder& own = finder(worker);
+    found_.tiles[tile] = own.search(edges_.search_tiles[tile]);
+    if (edges_.tones) found_.toned[tile] = own.take_toned();
+    if (edges_.behind.empty()) return;
+    if (!behind_[worker]) behind_[worker] = std::make_unique<HiddenLineFinder>(edges_);
+    found_.hidden[tile] = behind_[worker]->search(edges_.search_tiles[tile], own);
+}
+
+/// There is nothing to be found, but there are pixels to put.
+void LineSearch::fill_empty(std::size_t tile, std::size_t worker) {
+    finder(worker).search(edges_.search_tiles[tile]);
+    if (!fringes_.empty()) finish_fringe(tile);
+}
+
+/// Puts the pixels on the film to which lines of several tiles add.
+void LineSearch::finish_fringe(std::size_t tile) const {
+    const ColorPacket& empty = edges_.pipeline.shader.background();
+    const PixelColor background{empty.r[0], empty.g[0], empty.b[0], empty.a[0]};
+    ink::finish_fringe(edges_.search_tiles, fringes_, edges_.search_tiles_across(), tile,
+                       background, edges_.pipeline.film);
+}
+
+/// Mending is for one thread for most of the time. While it asks for rays, the others find ridges
+/// and put the pixels to which lines of several tiles add; then they fill the empty tiles.
 void LineSearch::mend(const SideWork& beside) {
     if (ridges_) {
-        loop_.expect(ridges_->strips() + ridges_->bands());
         loop_.run(ridges_->strips(),
                   [&](std::size_t k, std::size_t worker) { ridges_->trace_strip(k, worker); });
     }
-    std::vector<const Fringe*> fringes;
-    if (edges_.smooth_shading) {
-        fringes.reserve(found_.tiles.size());
-        for (const TileLines& tile : found_.tiles) fringes.push_back(&tile.fringe);
-    }
-    const ColorPacket& empty = edges_.pipeline.shader.background();
-    const PixelColor background{empty.r[0], empty.g[0], empty.b[0], empty.a[0]};
+    LineMender mender(edges_, finders_, found_.tiles, found_.toned);
     const std::size_t mends = edges_.mends_lines() ? 1 : 0;
     const std::size_t bands = ridges_ ? ridges_->bands() : 0;
-    loop_.expect(mends);
-    loop_.run(mends + bands + fringes.size() + beside.items,
-              [&](std::size_t i, std::size_t worker) {
-                  if (i < mends) {
-                      serial_ += mend_lines(edges_, finders_, found_.tiles, found_.toned);
-                  } else if (i -= mends; i < bands) {
-                      ridges_->search_band(i, worker);
-                  } else if (i -= bands; i < fringes.size()) {
-                      finish_fringe(edges_.search_tiles, fringes, edges_.search_tiles_across(), i,
-                                    background, edges_.pipeline.film);
-                  } else {
-                      beside.body(i - fringes.size());
-                  }
-              });
+    const std::size_t fringes = fringes_.empty() ? 0 : seeing_.size();
+    loop_.run(mends + bands + fringes + beside.items, [&](std::size_t i, std::size_t worker) {
+        if (i < mends) {
+            mender.mend_folds();
+            if (empty_.empty()) mender.join();
+        } else if (i -= mends; i < bands) {
+            ridges_->search_band(i, worker);
+        } else if (i -= bands; i < fringes) {
+            finish_fringe(seeing_[i]);
+        } else {
+            beside.body(i - fringes);
+        }
+    });
+    if (!empty_.empty()) {
+        loop_.run(1 + empty_.size(), [&](std::size_t i, std::size_t worker) {
+            if (i == 0) {
+                mender.join();
+            } else {
+                fill_empty(empty_[i - 1], worker);
+            }
+        });
+    }
+    serial_ += mender.stats();
 }
 
 /// Returns what they add to the density of lines.

@@ -43,10 +43,10 @@ struct SideWork {
 /// one thread: a draft has work for the others.
 class LineSearch {
   public:
-    /// Keeps references.
+    /// Keeps references. The loop learns how many items of work to expect.
     LineSearch(const Edges& edges, WorkLoop& loop);
 
-    /// Tile by tile. After it, the film's pixels are what they will be unless their shading is
+    /// Tile by tile. After it, a draft's pixels are what they will be unless their shading is
     /// smoothed along lines.
     void search_tiles();
     /// Mends lines and finds ridges.
@@ -59,12 +59,19 @@ class LineSearch {
     RenderStats stats() const;
 
   private:
+    std::size_t items() const;
     LineFinder& finder(std::size_t worker);
+    void search(std::size_t tile, std::size_t worker);
+    void fill_empty(std::size_t tile, std::size_t worker);
+    void finish_fringe(std::size_t tile) const;
     LineDensity take_ridges();
 
     const Edges& edges_;
     WorkLoop& loop_;
     FoundLines found_;
+    /// Tiles that may see anything, and others, which are put off until one thread mends lines.
+    std::vector<std::size_t> seeing_, empty_;
+    std::vector<const Fringe*> fringes_;  ///< of all tiles; none unless shading is smoothed
     std::optional<RidgeSearch> ridges_;
     std::vector<std::unique_ptr<LineFinder>> finders_;       ///< a thread
     std::vector<std::unique_ptr<HiddenLineFinder>> behind_;  ///< likewise

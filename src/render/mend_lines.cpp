@@ -1,62 +1,121 @@
 #include "render/mend_lines.h"
 
 #include <algorithm>
-#include <cstdint>
 #include <set>
-#include <span>
 #include <utility>
 
 #include "base/parallel.h"
 #include "lines/fold_joints.h"
-#include "lines/folds.h"
 #include "lines/line_gaps.h"
 #include "lines/tones.h"
 
 namespace ink {
 
-namespace {
+void LineMender::mend_folds() {
+    double ms = 0.0;
+    {
+        const Timer timer(ms);
+        if (!has_breaks()) return;
+        gather();
+        std::vector<FoldWorker> workers;
+        for (std::unique_ptr<LineFinder>& finder : finders_) {
+            if (!finder) finder = std::make_unique<LineFinder>(edges_);
+            finder->end_search();
+            workers.push_back({finder->more_samples(), [&](Vec2f low, Vec2f high) {
+                                   finder->enter({low.x, low.y, high.x, high.y});
+                               }});
+        }
+        const FoldLoop loop = [&](std::size_t count, const auto& body) {
+            parallel_for(count, static_cast<int>(workers.size()), body);
+        };
+        repairs_ =
+            ink::mend_folds(lines_, *squares_, edges_.viewpoint, spacing(), width(), workers, loop);
+    }
+    stats_.lines_ms += ms * static_cast<double>(finders_.size());  // all threads are at it, or wait
+}
+
+bool LineMender::has_breaks() const {
+    const auto may_break = [&](const Segment& segment) {
+        return segment.level == 0 && (segment.type == LineType::self_occlusion ||
+                                      (segment.type == LineType::crease && edges_.has_meshes));
+    };
+    return std::ranges::any_of(found_, [&](const TileLines& tile) {
+        return std::ranges::any_of(tile.segments, may_break);
+    });
+}
+
+void LineMender::gather() {
+    std::size_t most = 0;
+    for (const TileLines& tile : found_) most += tile.segments.size();
+    lines_.reserve(most + most / 4);  // and what joins them
+    places_.reserve(most);
+    for (std::uint32_t tile = 0; tile < found_.size(); ++tile) {
+        for (std::uint32_t k = 0; k < found_[tile].segments.size(); ++k) {
+            const Segment& segment = found_[tile].segments[k];
+            if (segment.level != 0 || segment.type == LineType::mesh) continue;
+            lines_.push_back(segment);
+            places_.push_back({tile, k});
+        }
+    }
+    squares_.emplace(lines_);
+}
+
+float LineMender::width() const {
+    return edges_.ink.styles[edges_.style_of(LineType::self_occlusion, 0)].width_px;
+}
+
+void LineMender::join() {
+    const Timer timer(stats_.lines_ms);
+    if (lines_.empty()) return;
+    lines_.insert(lines_.end(), repairs_.bridges.begin(), repairs_.bridges.end());
+    close_gaps();
+    ease_joints();
+    if (edges_.tones) repair_toned();
+    change();
+}
+
+void LineMender::close_gaps() {
+    const std::vector<Segment> pieces =
+        ink::close_gaps({lines_, places_.size(), *squares_}, repairs_.crumbs, spacing(), width());
+    lines_.insert(lines_.end(), pieces.begin(), pieces.end());
+}
+
+void LineMender::ease_joints() {
+    const std::size_t first_joining = places_.size();
+    const FoldJoints joints =
+        ink::ease_joints({lines_, first_joining, *squares_}, repairs_.crumbs, spacing(), width());
+    std::vector<bool> eased(lines_.size());
+    for (const std::size_t k : joints.dropped) {
+        eased[k] = true;
+        if (k < first_joining) repairs_.crumbs.push_back(k);
+    }
+    std::ranges::sort(repairs_.crumbs);
+    repairs_.bridges = joints.curves;
+    for (std::size_t k = first_joining; k < lines_.size(); ++k) {
+        if (!eased[k]) repairs_.bridges.push_back(lines_[k]);
+    }
+}
 
 /// The same in the lines that light and shade are told apart by. A crumb may hang on another line,
 /// so that only a segment both of whose ends are a crumb's is part of one.
-void repair(const Edges& edges, const FoldRepairs& repairs, std::span<const Segment> lines,
-            std::vector<std::vector<Segment>>& toned) {
+void LineMender::repair_toned() {
     std::set<std::pair<float, float>> ends;
-    for (const std::size_t k : repairs.crumbs) {
-        for (const Vec2f end : {lines[k].a, lines[k].b}) ends.insert({end.x, end.y});
+    for (const std::size_t k : repairs_.crumbs) {
+        for (const Vec2f end : {lines_[k].a, lines_[k].b}) ends.insert({end.x, end.y});
     }
     const auto is_crumb = [&](const Segment& segment) {
         return segment.type == LineType::self_occlusion &&
                ends.contains({segment.a.x, segment.a.y}) &&
                ends.contains({segment.b.x, segment.b.y});
     };
-    for (std::vector<Segment>& tile : toned) std::erase_if(tile, is_crumb);
-    for (Segment bridge : repairs.bridges) {
+    for (std::vector<Segment>& tile : toned_) std::erase_if(tile, is_crumb);
+    for (Segment bridge : repairs_.bridges) {
         Tones::double_ids(bridge);
-        toned[edges.search_tile_at((bridge.a + bridge.b) * 0.5F)].push_back(bridge);
+        toned_[edges_.search_tile_at((bridge.a + bridge.b) * 0.5F)].push_back(bridge);
     }
 }
 
-/// Closes what gaps are left, and eases the joints.
-void join(std::vector<Segment>& lines, const plane::SegmentSquares& squares, float spacing,
-          float width, FoldRepairs& repairs) {
-    const std::size_t first_joining = lines.size();
-    lines.insert(lines.end(), repairs.bridges.begin(), repairs.bridges.end());
-    const std::vector<Segment> pieces =
-        close_gaps({lines, first_joining, squares}, repairs.crumbs, spacing, width);
-    lines.insert(lines.end(), pieces.begin(), pieces.end());
-    const FoldJoints joints =
-        ease_joints({lines, first_joining, squares}, repairs.crumbs, spacing, width);
-    std::vector<bool> eased(lines.size());
-    for (const std::size_t k : joints.dropped) {
-        eased[k] = true;
-        if (k < first_joining) repairs.crumbs.push_back(k);
-    }
-    std::ranges::sort(repairs.crumbs);
-    repairs.bridges = joints.curves;
-    for (std::size_t k = first_joining; k < lines.size(); ++k) {
-        if (!eased[k]) repairs.bridges.push_back(lines[k]);
-    }
-}
+namespace {
 
 /// Makes a tile's strokes anew from its segments.
 void make_strokes(const Edges& edges, TileLines& tile) {
@@ -68,76 +127,24 @@ void make_strokes(const Edges& edges, TileLines& tile) {
     }
 }
 
-void mend(const Edges& edges, std::vector<std::unique_ptr<LineFinder>>& finders,
-          std::vector<TileLines>& found, std::vector<std::vector<Segment>>& toned) {
-    const auto may_break = [&](const Segment& segment) {
-        return segment.level == 0 && (segment.type == LineType::self_occlusion ||
-                                      (segment.type == LineType::crease && edges.has_meshes));
-    };
-    if (std::ranges::none_of(found, [&](const TileLines& tile) {
-            return std::ranges::any_of(tile.segments, may_break);
-        })) {
-        return;
-    }
-    std::vector<Segment> lines;
-    std::vector<std::pair<std::uint32_t, std::uint32_t>> places;  // tile, and index within it
-    std::size_t most = 0;
-    for (const TileLines& tile : found) most += tile.segments.size();
-    lines.reserve(most + most / 4);  // and what joins them
-    places.reserve(most);
-    for (std::uint32_t tile = 0; tile < found.size(); ++tile) {
-        for (std::uint32_t k = 0; k < found[tile].segments.size(); ++k) {
-            const Segment& segment = found[tile].segments[k];
-            if (segment.level != 0 || segment.type == LineType::mesh) continue;
-            lines.push_back(segment);
-            places.emplace_back(tile, k);
-        }
-    }
-    const float width = edges.ink.styles[edges.style_of(LineType::self_occlusion, 0)].width_px;
-    std::vector<FoldWorker> workers;
-    for (std::unique_ptr<LineFinder>& finder : finders) {
-        if (!finder) finder = std::make_unique<LineFinder>(edges);
-        finder->end_search();
-        workers.push_back({finder->more_samples(), [&](Vec2f low, Vec2f high) {
-                               finder->enter({low.x, low.y, high.x, high.y});
-                           }});
-    }
-    const plane::SegmentSquares squares(lines);
-    FoldRepairs repairs =
-        mend_folds(lines, squares, edges.viewpoint, 1.0F / static_cast<float>(edges.q), width,
-                   workers, [&](std::size_t count, const auto& body) {
-                       parallel_for(count, static_cast<int>(workers.size()), body);
-                   });
-    join(lines, squares, 1.0F / static_cast<float>(edges.q), width, repairs);
-    if (edges.tones) repair(edges, repairs, lines, toned);
-    std::vector<bool> changed(found.size());
-    // Last first, so that the places of the others stay what they are.
-    for (auto k = repairs.crumbs.rbegin(); k != repairs.crumbs.rend(); ++k) {
-        const auto [tile, index] = places[*k];
-        found[tile].segments.erase(found[tile].segments.begin() + index);
-        changed[tile] = true;
-    }
-    for (const Segment& bridge : repairs.bridges) {
-        const std::size_t tile = edges.search_tile_at((bridge.a + bridge.b) * 0.5F);
-        found[tile].segments.push_back(bridge);  // with the distance of the line that it is like
-        changed[tile] = true;
-    }
-    for (std::size_t tile = 0; tile < found.size(); ++tile) {
-        if (changed[tile]) make_strokes(edges, found[tile]);
-    }
-}
-
 }  // namespace
 
-RenderStats mend_lines(const Edges& edges, std::vector<std::unique_ptr<LineFinder>>& finders,
-                       std::vector<TileLines>& found, std::vector<std::vector<Segment>>& toned) {
-    RenderStats stats;
-    {
-        const Timer timer(stats.lines_ms);
-        mend(edges, finders, found, toned);
+void LineMender::change() {
+    std::vector<bool> changed(found_.size());
+    // Last first, so that the places of the others stay what they are.
+    for (auto k = repairs_.crumbs.rbegin(); k != repairs_.crumbs.rend(); ++k) {
+        const auto [tile, index] = places_[*k];
+        found_[tile].segments.erase(found_[tile].segments.begin() + index);
+        changed[tile] = true;
     }
-    stats.lines_ms *= static_cast<double>(finders.size());  // all threads are at it, or wait
-    return stats;
+    for (const Segment& bridge : repairs_.bridges) {
+        const std::size_t tile = edges_.search_tile_at((bridge.a + bridge.b) * 0.5F);
+        found_[tile].segments.push_back(bridge);  // with the distance of the line that it is like
+        changed[tile] = true;
+    }
+    for (std::size_t tile = 0; tile < found_.size(); ++tile) {
+        if (changed[tile]) make_strokes(edges_, found_[tile]);
+    }
 }
 
 }  // namespace ink
