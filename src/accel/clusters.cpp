@@ -230,6 +230,28 @@ void append_copies(const Parts& parts, Clusters& all, std::vector<Bounds3f>& box
         });
 }
 
+/// The normals of the mesh whose clusters were appended last.
+void append_normals(const Mesh& mesh, std::size_t first_cluster, Clusters& all) {
+    if (mesh.corner_normals.empty()) return;
+    all.has_normals[all.clusters[first_cluster].object] = 1;
+    all.corner_normals.resize(all.triangles.size());
+    const std::size_t count = all.clusters.size() - first_cluster;
+    parallel_ranges(count, kGrain / kLanes, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t c = begin; c < end; ++c) {
+            const Cluster& cluster = all.clusters[first_cluster + c];
+            CornerNormals& normals = all.corner_normals[cluster.packet];
+            for (int lane = 0; lane < kLanes; ++lane) {
+                const int used = std::min(lane, cluster.count - 1);
+                const auto& [at_a, at_b, at_c] =
+                    mesh.corner_normals[all.order[cluster.first + static_cast<std::size_t>(used)]];
+                normals.a[lane] = at_a;
+                normals.b[lane] = at_b;
+                normals.c[lane] = at_c;
+            }
+        }
+    });
+}
+
 }  // namespace
 
 bool has_screen_form(const Shape& shape) {
@@ -277,7 +299,7 @@ GlyphLanes moved(const GlyphLanes& glyphs, const Motion& motion) {
 }
 
 Clusters::Clusters(const Scene& scene)
-    : unit_shapes(scene.objects().size()), corner_normals(scene.objects().size()) {
+    : unit_shapes(scene.objects().size()), has_normals(scene.objects().size()) {
     std::vector<Bounds3f> boxes;
     for (std::uint32_t i = 0; i < scene.objects().size(); ++i) {
         const Shape& shape = scene.objects()[i].shape;
@@ -286,8 +308,9 @@ Clusters::Clusters(const Scene& scene)
             append(SphereParts{*balls}, i, spheres, *this, boxes);
             append_copies(SphereParts{*balls}, *this, boxes);
         } else if (const auto* mesh = std::get_if<Mesh>(&shape)) {
+            const std::size_t first = clusters.size();
             append(TriangleParts{*mesh}, i, triangles, *this, boxes);
-            if (!mesh->corner_normals.empty()) corner_normals[i] = mesh->corner_normals[0].data();
+            append_normals(*mesh, first, *this);
         } else if (const auto* hexahedra = std::get_if<Hexahedra>(&shape)) {
             append(SolidParts{*hexahedra}, i, solids, *this, boxes);
         } else if (const auto* placed = std::get_if<Glyphs>(&shape)) {

@@ -38,6 +38,10 @@ struct SphereLanes {
 struct TriangleLanes {
     Points a, b, c;
 };
+/// Normals at their corners, packed.
+struct CornerNormals {
+    Lanes<std::uint32_t> a, b, c;
+};
 /// Triangles that faces of hexahedra are cut into.
 struct SolidLanes {
     TriangleLanes triangles;
@@ -73,9 +77,9 @@ struct Clusters {
     std::vector<GlyphLanes> glyphs;
     std::vector<ClusterCopy> copies;
     std::vector<UnitShape> unit_shapes;  ///< of objects that are glyphs; an entry an object
-    /// Of objects that are meshes with normals at corners, three a triangle; else null. The
-    /// scene's.
-    std::vector<const std::uint32_t*> corner_normals;
+    /// Of packets of triangles, of objects whose entry in has_normals is not 0.
+    std::vector<CornerNormals> corner_normals;
+    std::vector<std::uint8_t> has_normals;
 
     /// Boxes of the clusters; then boxes whose lanes bound a packet of the level below each, up to
     /// a single packet.

@@ -71,7 +71,9 @@ Build build_of(const Spheres& s) {
 }
 Build build_of(const Mesh& m) {
     const auto count = static_cast<double>(m.triangles.size());
-    return {count * (sizeof(TriangleLanes) / double{kLanes} + kKeyBytes + kClusterBytes),
+    const double lanes =
+        sizeof(TriangleLanes) + (m.corner_normals.empty() ? 0.0 : sizeof(CornerNormals));
+    return {count * (lanes / double{kLanes} + kKeyBytes + kClusterBytes),
             1e-9 * kTriangleNs * count};
 }
 Build build_of(const Glyphs& g) {

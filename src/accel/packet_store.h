@@ -72,10 +72,6 @@ class PacketStore {
         if (!has(cluster)) ink::prefetch(clusters_, cluster, wants_shades_);
     }
 
-    void prefetch_order(std::uint32_t cluster) const {
-        if (!has(cluster)) ink::prefetch_order(clusters_, cluster);
-    }
-
     /// To be called before the first `get`: the sides of triangles are found as well.
     void want_sides() { wants_sides_ = true; }
     const PacketSides* sides() const { return sides_.data(); }

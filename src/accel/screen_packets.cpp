@@ -1,6 +1,5 @@
 #include "accel/screen_packets.h"
 
-#include <algorithm>
 #include <limits>
 
 // Everything between the two namespace macros is built once for each instruction set.
@@ -82,18 +81,6 @@ void prepare_copy(const Basis& basis, const Clusters& clusters, const Cluster& c
     prepare(basis, moved(lanes, clusters.copies[cluster.copy].motion), packet);
 }
 
-/// Normals at the corners of a cluster's triangles; unused lanes repeat the last one.
-void find_corner_normals(const std::uint32_t* packed, const Cluster& cluster,
-                         const ScreenPacket& packet, CornerNormals& normals) {
-    for (int lane = 0; lane < kLanes; ++lane) {
-        const std::uint32_t primitive = packet.primitive[std::min(lane, cluster.count - 1)];
-        const std::uint32_t* own = packed + std::size_t{3} * primitive;
-        normals.a[lane] = own[0];
-        normals.b[lane] = own[1];
-        normals.c[lane] = own[2];
-    }
-}
-
 void prepare_triangles(const Basis& basis, const Clusters& clusters, const Cluster& cluster,
                        ScreenPacket& packet, PacketShades* shades) {
     const TriangleLanes& triangles = clusters.triangles[cluster.packet];
@@ -101,11 +88,9 @@ void prepare_triangles(const Basis& basis, const Clusters& clusters, const Clust
     prepare(basis, triangles, packet, corners);
     packet.has_hit_numbers = shades == nullptr;
     if (shades == nullptr) return record_hits(triangles, packet);
-    const std::uint32_t* packed = clusters.corner_normals[cluster.object];
-    CornerNormals normals;
-    if (packed != nullptr) find_corner_normals(packed, cluster, packet, normals);
-    prepare_shades(basis, triangles, corners, packed != nullptr ? &normals : nullptr, packet,
-                   *shades);
+    const bool smooth = clusters.has_normals[cluster.object] != 0;
+    prepare_shades(basis, triangles, corners,
+                   smooth ? &clusters.corner_normals[cluster.packet] : nullptr, packet, *shades);
 }
 
 }  // namespace
@@ -144,26 +129,19 @@ void prefetch(const Clusters& clusters, std::uint32_t cluster, bool shades) {
         for (std::size_t at = 0; at < sizeof(lanes); at += kLine) __builtin_prefetch(bytes + at);
     };
     const Cluster& own = clusters.clusters[cluster];
+    // They may lie on two cache lines.
+    __builtin_prefetch(&clusters.order[own.first]);
+    __builtin_prefetch(&clusters.order[own.first + own.count - 1U]);
     switch (own.kind) {
         case ClusterKind::spheres: return ask(clusters.spheres[own.packet]);
         case ClusterKind::triangles:
-            if (const std::uint32_t* packed = clusters.corner_normals[own.object];
-                shades && packed != nullptr) {
-                for (std::uint32_t i = 0; i < own.count; ++i) {
-                    __builtin_prefetch(packed + std::size_t{3} * clusters.order[own.first + i]);
-                }
+            if (shades && clusters.has_normals[own.object] != 0) {
+                ask(clusters.corner_normals[own.packet]);
             }
             return ask(clusters.triangles[own.packet]);
         case ClusterKind::solids: return ask(clusters.solids[own.packet]);
         case ClusterKind::glyphs: return ask(clusters.glyphs[own.packet]);
     }
-}
-
-void prefetch_order(const Clusters& clusters, std::uint32_t cluster) {
-    const Cluster& own = clusters.clusters[cluster];
-    // They may lie on two cache lines.
-    __builtin_prefetch(&clusters.order[own.first]);
-    __builtin_prefetch(&clusters.order[own.first + own.count - 1U]);
 }
 
 void prepare(const Basis& basis, const BoxLanes& boxes, std::size_t used, BoundsPacket& packet) {

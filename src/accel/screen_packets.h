@@ -117,11 +117,6 @@ struct ScreenCorners {
     Lanes<float> area;
 };
 
-/// Normals at those corners, packed.
-struct CornerNormals {
-    Lanes<std::uint32_t> a, b, c;
-};
-
 /// A projection's numbers by value, so that nothing that a loop writes can change them.
 struct Basis {
     double rx, ry, rz, dx, dy, dz, fx, fy, fz;  ///< right, down, forward
@@ -152,10 +147,8 @@ void prepare_shades(const Basis& basis, const TriangleLanes& triangles,
 void prepare(const Basis& basis, const Clusters& clusters, const Cluster& cluster,
              ScreenPacket& packet, PacketShades* shades = nullptr);
 
-/// Asks the cache for what `prepare` will read of a cluster, with `shades` or without. Which
-/// primitives these are must be read first, and should be asked for even earlier.
+/// Asks the cache for what `prepare` will read of a cluster, with `shades` or without.
 void prefetch(const Clusters& clusters, std::uint32_t cluster, bool shades);
-void prefetch_order(const Clusters& clusters, std::uint32_t cluster);
 
 /// Screen bounds of the first `used` of sixteen boxes.
 void prepare(const Basis& basis, const BoxLanes& boxes, std::size_t used, BoundsPacket& packet);

@@ -213,7 +213,6 @@ void ScreenTileTracer::find_fronts(const FrontRaster& raster, std::uint32_t most
         if (!(candidates_.depth(k * kLanes) < most)) return;
         const std::size_t end = std::min((k + 1) * kLanes, candidates_.count());
         for (std::size_t i = k * kLanes; i < end; ++i) {
-            if (i + 2 < end) store_.prefetch_order(candidates_.cluster(i + 2));
             if (i + 1 < end) store_.prefetch(candidates_.cluster(i + 1));
             if (!matters(candidates_.bounds(k), static_cast<int>(i % kLanes), raster)) continue;
             const std::uint32_t packet = packet_of(i);
