@@ -112,6 +112,7 @@ void LineFinder::gather_row(int x0, int x1, int y) {
         const std::uint32_t k = blocks[n];
         if (k != kEmptyBlock && seen_[k] != 0) block_row_[n] = &colors_[k];
     }
+    if (as_traced && !changes) return;
     for (std::size_t n = 0; n < count; ++n) {
         const int x = x0 + static_cast<int>(n) * kBlockSide;
         if (!as_traced || (changes && smoothing_.changes(x, y))) block_row_[n] = mixed_block(x, y);
@@ -142,16 +143,13 @@ const ColorPacket* LineFinder::mixed_block(int x, int y) {
     return &mean;
 }
 
-/// Linear, premultiplied colour of a pixel of the tile, before smoothing.
+/// Linear, premultiplied colour of a pixel, counted from the tile's first one, before smoothing.
 PixelColor LineFinder::pixel_color(int x, int y) const {
     const int q = edges_.q;
-    const int i0 = x * q - grid_.x0;
-    const int j0 = y * q - grid_.y0;
-    if (q == 1) return color_at(i0, j0);
     const float weight = 1.0F / static_cast<float>(q * q);
     PixelColor sum{};
     for (int n = 0; n < q * q; ++n) {
-        const PixelColor color = color_at(i0 + n % q, j0 + n / q);
+        const PixelColor color = color_at(x * q + n % q, y * q + n / q);
         for (std::size_t c = 0; c < 4; ++c) sum[c] += color[c] * weight;
     }
     return sum;
@@ -162,9 +160,27 @@ void LineFinder::keep_fringe(const Tile& tile) {
     Fringe& fringe = found_.fringe;
     smoothing_.copy_fringe(fringe);
     if (!saw_anything_) return;
-    fringe.colors.reserve(static_cast<std::size_t>(tile.x1 - tile.x0 + tile.y1 - tile.y0 - 1));
-    for (int x = tile.x0; x < tile.x1; ++x) fringe.colors.push_back(pixel_color(x, tile.y0));
-    for (int y = tile.y0 + 1; y < tile.y1; ++y) fringe.colors.push_back(pixel_color(tile.x0, y));
+    const int width = tile.x1 - tile.x0;
+    const int height = tile.y1 - tile.y0;
+    fringe.colors.reserve(static_cast<std::size_t>(width + height - 1));
+    if (edges_.q > 1) {
+        for (int x = 0; x < width; ++x) fringe.colors.push_back(pixel_color(x, 0));
+        for (int y = 1; y < height; ++y) fringe.colors.push_back(pixel_color(0, y));
+        return;
+    }
+    // Block by block, every `step`th of a block's pixels.
+    const auto add = [&](int x, int y, int first, int step, int past) {
+        const std::uint32_t k = block_index(x / kBlockSide, y / kBlockSide);
+        const ColorPacket& own =
+            k == kEmptyBlock ? edges_.pipeline.shader.background() : colors_[k];
+        for (int lane = first; lane < past * step; lane += step) {
+            fringe.colors.push_back({own.r[lane], own.g[lane], own.b[lane], own.a[lane]});
+        }
+    };
+    for (int x = 0; x < width; x += kBlockSide) add(x, 0, 0, 1, std::min(width - x, kBlockSide));
+    for (int y = 0; y < height; y += kBlockSide) {
+        add(0, y, y == 0 ? kBlockSide : 0, kBlockSide, std::min(height - y, kBlockSide));
+    }
 }
 
 /// What pixel centres see, whatever the lattice.
