@@ -117,7 +117,8 @@ class Seen {
         const int down = size_.height / kBlockSide;
         std::vector<std::uint32_t> cells(static_cast<std::size_t>(across * down));
         std::iota(cells.begin(), cells.end(), 0U);
-        tracer->find({0, 0, kBlockSide, across, down, cells, cells.size()}, points);
+        tracer->find({0, 0, across * kBlockSide, down * kBlockSide, 1.0F, {}, cells, cells.size()},
+                     points);
         return tracer;
     }
     std::vector<RayPacket> rays(const std::vector<PointPacket>& points) const {

@@ -62,8 +62,19 @@ class View {
         return std::get<Mesh>(scene_.objects()[object].shape);
     }
 
-    /// All of the picture as a raster, or packet by packet.
-    Shaded shade(bool raster = true) const {
+    /// All of the picture packet by packet.
+    Shaded shade_packets() const { return shade({}); }
+    /// The first columns of its points as a raster.
+    Shaded shade_raster(int columns = kSide) const {
+        std::vector<std::uint32_t> cells(kPackets);
+        std::iota(cells.begin(), cells.end(), 0U);
+        return shade({0, 0, columns, kSide, 1.0F, {}, cells, cells.size()});
+    }
+
+  private:
+    static constexpr std::size_t kPackets = (kSide / kBlockSide) * (kSide / kBlockSide);
+
+    Shaded shade(const BlockRaster& raster) const {
         Shaded seen;
         const int across = kSide / kBlockSide;
         for (int k = 0; k < across * across; ++k) {
@@ -74,14 +85,12 @@ class View {
             }
             seen.points.push_back(packet);
         }
-        std::vector<std::uint32_t> cells(seen.points.size());
-        std::iota(cells.begin(), cells.end(), 0U);
+        // Of a raster it is told where its points lie.
+        const std::vector<PointPacket> blank(kPackets);
         const auto tracer = frame_->tile_tracer();
         tracer->want_shades();
         tracer->enter({0, 0, kSide, kSide});
-        tracer->find(raster ? BlockRaster{0, 0, kBlockSide, across, across, cells, cells.size()}
-                            : BlockRaster{},
-                     seen.points);
+        tracer->find(raster, raster.packets > 0 ? blank : seen.points);
         seen.hits.resize(seen.points.size());
         seen.normals.resize(seen.points.size());
         seen.places.resize(seen.points.size());
@@ -89,7 +98,6 @@ class View {
         return seen;
     }
 
-  private:
     Scene scene_;
     Clusters clusters_;
     Camera camera_;
@@ -165,7 +173,7 @@ TEST(ShadeForms, InterpolateNormalsAsOnTheSurface) {
     for (const ViewSettings& settings : views()) {
         const View view({random_triangles(3, 300, 0.8F)}, settings);
         const Projection projection = view.camera().projection();
-        const Shaded seen = view.shade();
+        const Shaded seen = view.shade_raster();
         int hits = 0;
         for (std::size_t k = 0; k < seen.points.size(); ++k) {
             for (int i = 0; i < kLanes; ++i) {
@@ -195,7 +203,7 @@ TEST(ShadeForms, InterpolateNormalsAsOnTheSurface) {
 TEST(ShadeForms, FaceTheViewer) {
     for (const ViewSettings& settings : views()) {
         const View view({random_triangles(4, 300, 0.5F)}, settings);
-        const Shaded seen = view.shade();
+        const Shaded seen = view.shade_raster();
         for (std::size_t k = 0; k < seen.points.size(); ++k) {
             for (int i = 0; i < kLanes; ++i) {
                 if (seen.hits[k].object[i] == kNoObject) continue;
@@ -210,7 +218,7 @@ TEST(ShadeForms, FaceTheViewer) {
 TEST(ShadeForms, LieWhereTheRayMeetsTheTriangle) {
     for (const ViewSettings& settings : views()) {
         const View view({random_triangles(9, 300, 0.5F)}, settings);
-        const Shaded seen = view.shade();
+        const Shaded seen = view.shade_raster();
         int hits = 0;
         for (std::size_t k = 0; k < seen.points.size(); ++k) {
             for (int i = 0; i < kLanes; ++i) {
@@ -236,7 +244,7 @@ TEST(ShadeForms, OfFlatMeshesAreTheirFacets) {
     Object flat = random_triangles(5, 200, 0.5F);
     std::get<Mesh>(flat.shape).corner_normals.clear();
     const View view({flat, random_triangles(6, 200, 0.5F)}, {});
-    const Shaded seen = view.shade();
+    const Shaded seen = view.shade_raster();
     int hits = 0;
     for (std::size_t k = 0; k < seen.points.size(); ++k) {
         for (int i = 0; i < kLanes; ++i) {
@@ -250,7 +258,7 @@ TEST(ShadeForms, OfFlatMeshesAreTheirFacets) {
 
 TEST(ShadeForms, AreTheSameBitsForRastersAndPacketsOnEveryInstructionSet) {
     const View view({random_triangles(7, 300, 0.8F)}, {});
-    const Shaded native = view.shade();
+    const Shaded native = view.shade_raster();
     const auto expect_same = [&](const Shaded& seen) {
         for (std::size_t k = 0; k < seen.points.size(); ++k) {
             for (int i = 0; i < kLanes; ++i) {
@@ -264,14 +272,27 @@ TEST(ShadeForms, AreTheSameBitsForRastersAndPacketsOnEveryInstructionSet) {
             }
         }
     };
-    expect_same(view.shade(false));
+    expect_same(view.shade_packets());
     for (const std::int64_t target : {HWY_SSSE3, HWY_SSE4, HWY_AVX2, HWY_AVX3}) {
         hwy::SetSupportedTargetsForTest(0);
         if ((hwy::SupportedTargets() & target) == 0) continue;
         hwy::SetSupportedTargetsForTest(target);
-        expect_same(view.shade());
+        expect_same(view.shade_raster());
     }
     hwy::SetSupportedTargetsForTest(0);
+}
+
+TEST(ShadeForms, OfARasterEndWithItsPoints) {
+    const View view({random_triangles(11, 400, 0.5F)}, {});
+    constexpr int kColumns = kSide - 3;
+    const Shaded whole = view.shade_raster();
+    const Shaded cut = view.shade_raster(kColumns);
+    for (std::size_t k = 0; k < whole.points.size(); ++k) {
+        for (int i = 0; i < kLanes; ++i) {
+            const bool within = whole.points[k].x[i] < static_cast<float>(kColumns);
+            EXPECT_EQ(cut.hits[k].object[i], within ? whole.hits[k].object[i] : kNoObject);
+        }
+    }
 }
 
 TEST(ShadeForms, AreOfTrianglesAlone) {

@@ -4,6 +4,7 @@
 #include <array>
 #include <bit>
 #include <cstdint>
+#include <utility>
 
 // Everything between the two namespace macros is built once for each instruction set.
 #undef HWY_TARGET_INCLUDE
@@ -325,9 +326,13 @@ struct StartedLanes {
     Mask on;
 
     HWY_INLINE StartedLanes(const Lens& lens, const PointPacket& points, int i, Front& front)
-        : x(hn::Sub(load(points.x, i), set(lens.centre_x))),
-          y(hn::Sub(load(points.y, i), set(lens.centre_y))),
-          on(hn::RebindMask(kFloats, hn::Ne(load(points.active, i), hn::Zero(kIntegers)))) {
+        : StartedLanes(hn::Sub(load(points.x, i), set(lens.centre_x)),
+                       hn::Sub(load(points.y, i), set(lens.centre_y)),
+                       hn::RebindMask(kFloats, hn::Ne(load(points.active, i), hn::Zero(kIntegers))),
+                       i, front) {}
+
+    HWY_INLINE StartedLanes(Vector at_x, Vector at_y, Mask active, int i, Front& front)
+        : x(at_x), y(at_y), on(active) {
         hn::Store(x, kFloats, front.x.data() + i);
         hn::Store(y, kFloats, front.y.data() + i);
         hn::Store(hn::IfThenElse(on, set(kInfinity), set(-kInfinity)), kFloats,
@@ -367,16 +372,45 @@ void start_front(const Projection& projection, const PointPacket& points, Front&
                     hn::GetLane(hn::MaxOfLanes(kFloats, bottom)), farthest};
 }
 
-void start_fronts(const Projection& projection, std::span<const PointPacket> points, bool flat,
+/// Along one axis of a raster: where the points of a cell lie, and which of them are active.
+struct RasterAxis {
+    Lanes<float> in_cell;  ///< a lane's column or row
+    float first, count, spacing, offset, centre;
+
+    HWY_INLINE std::pair<Vector, Mask> points(int cell, int i) const {
+        const auto from_first =
+            hn::Add(load(in_cell, i), set(static_cast<float>(cell * kBlockSide)));
+        const auto middle = hn::Add(hn::Add(from_first, set(first)), set(0.5F));
+        const auto place = hn::Add(hn::Mul(middle, set(spacing)), set(offset));
+        return {hn::Sub(place, set(centre)), hn::Lt(from_first, set(count))};
+    }
+};
+
+void start_raster(const Projection& projection, const BlockRaster& raster, bool flat,
                   Front* fronts) {
     const Lens lens(projection);
-    for (const PointPacket& packet : points) {
-        Front& front = *fronts++;
-        front.window.farthest = -kInfinity;
-        for (int i = 0; i < kLanes; i += kStep) {
-            const StartedLanes lanes(lens, packet, i, front);
-            if (!flat) lanes.foreshorten(lens, i, front);
-            if (!hn::AllFalse(kFloats, lanes.on)) front.window.farthest = kInfinity;
+    const auto axis = [&](int first, int count, float offset, float centre) {
+        return RasterAxis{
+            {},    static_cast<float>(first), static_cast<float>(count), raster.spacing, offset,
+            centre};
+    };
+    RasterAxis across = axis(raster.x, raster.columns, raster.offset.x, lens.centre_x);
+    RasterAxis down = axis(raster.y, raster.rows, raster.offset.y, lens.centre_y);
+    for (int i = 0; i < kLanes; ++i) {
+        across.in_cell[i] = static_cast<float>(i % kBlockSide);
+        down.in_cell[i] = static_cast<float>(i / kBlockSide);
+    }
+    const std::uint32_t* packet = raster.packet_at.data();
+    for (int row = 0; row < raster.down(); ++row) {
+        for (int column = 0; column < raster.across(); ++column, ++packet) {
+            if (*packet == BlockRaster::kNone) continue;
+            Front& front = fronts[*packet];
+            for (int i = 0; i < kLanes; i += kStep) {
+                const auto [x, within_columns] = across.points(column, i);
+                const auto [y, within_rows] = down.points(row, i);
+                const StartedLanes lanes(x, y, hn::And(within_columns, within_rows), i, front);
+                if (!flat) lanes.foreshorten(lens, i, front);
+            }
         }
     }
 }
@@ -395,7 +429,7 @@ HWY_EXPORT(intersect_raster);
 HWY_EXPORT(raster_farthest);
 HWY_EXPORT(raster_matters);
 HWY_EXPORT(start_front);
-HWY_EXPORT(start_fronts);
+HWY_EXPORT(start_raster);
 
 LaneBits overlap(const BoundsPacket& bounds, const Window& window) {
     return HWY_DYNAMIC_DISPATCH(find_overlap)(bounds, window);
@@ -434,9 +468,9 @@ void Front::start(const Projection& projection, const PointPacket& points) {
     HWY_DYNAMIC_DISPATCH(start_front)(projection, points, *this);
 }
 
-void start_cells(const Projection& projection, std::span<const PointPacket> points, bool flat,
+void start_cells(const Projection& projection, const BlockRaster& raster, bool flat,
                  Front* fronts) {
-    HWY_DYNAMIC_DISPATCH(start_fronts)(projection, points, flat, fronts);
+    HWY_DYNAMIC_DISPATCH(start_raster)(projection, raster, flat, fronts);
 }
 
 }  // namespace ink

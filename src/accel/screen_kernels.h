@@ -20,11 +20,10 @@ struct Front {
     void start(const Projection& projection, const PointPacket& points);
 };
 
-/// Starts the fronts of cells of a raster, of whose windows only `farthest` is needed; nor is
-/// their foreshortening, which takes a division, if they are `flat`: of triangles that will be seen
-/// (see `see`).
-void start_cells(const Projection& projection, std::span<const PointPacket> points, bool flat,
-                 Front* fronts);
+/// Starts the fronts of a raster's packets, whose windows are not needed; nor is their
+/// foreshortening, which takes a division, if they are `flat`: of triangles that will be seen (see
+/// `see`).
+void start_cells(const Projection& projection, const BlockRaster& raster, bool flat, Front* fronts);
 
 /// Fronts in the cells of a raster, row by row. Four by four cells are asked together whether a
 /// primitive matters to them; such a window may begin at any cell, so rows of cells end in kBeyond

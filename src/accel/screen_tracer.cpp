@@ -6,6 +6,7 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
+#include <numeric>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -68,7 +69,7 @@ class ScreenTileTracer final : public TileTracer {
     void intersect(std::span<const PointPacket> points, std::span<const RayPacket> rays,
                    std::span<HitPacket> hits) override;
     void find(const BlockRaster& raster, std::span<const PointPacket> points) override {
-        start(points, raster.packets);
+        start(raster, points);
         if (raster.packets > 0) find_fronts(lay_out(raster));
         for (std::size_t k = raster.packets; k < points.size(); ++k) find_front(fronts_[k]);
     }
@@ -113,7 +114,7 @@ class ScreenTileTracer final : public TileTracer {
     static constexpr std::uint32_t kNotYet = 0xFFFFFFFFU;
 
     void find_front(Front& front);
-    void start(std::span<const PointPacket> points, std::size_t on_raster);
+    void start(const BlockRaster& raster, std::span<const PointPacket> points);
     template <class Visit>
     bool for_each_near(const Window& window, const Visit& visit);
     FrontRaster lay_out(const BlockRaster& raster);
@@ -163,22 +164,22 @@ void ScreenTileTracer::resolve(std::size_t first, std::span<const PointPacket> /
     }
 }
 
-/// The first packets lie on a raster.
-void ScreenTileTracer::start(std::span<const PointPacket> points, std::size_t on_raster) {
+/// Of points on the raster it is told where they lie.
+void ScreenTileTracer::start(const BlockRaster& raster, std::span<const PointPacket> points) {
     if (fronts_.size() < points.size()) fronts_.resize(points.size());
-    start_cells(view_.projection, points.first(on_raster), store_.wants_shades(), fronts_.data());
-    for (std::size_t k = on_raster; k < points.size(); ++k) {
+    start_cells(view_.projection, raster, store_.wants_shades(), fronts_.data());
+    for (std::size_t k = raster.packets; k < points.size(); ++k) {
         fronts_[k].start(view_.projection, points[k]);
     }
 }
 
 FrontRaster ScreenTileTracer::lay_out(const BlockRaster& raster) {
     const Vec2f centre = view_.projection.centre;
-    FrontRaster fronts{raster.left - centre.x,
-                       raster.top - centre.y,
-                       raster.side,
-                       raster.across,
-                       raster.down,
+    FrontRaster fronts{raster.left() - centre.x,
+                       raster.top() - centre.y,
+                       raster.side(),
+                       raster.across(),
+                       raster.down(),
                        nullptr,
                        nullptr,
                        fronts_.data(),
@@ -190,12 +191,12 @@ FrontRaster ScreenTileTracer::lay_out(const BlockRaster& raster) {
     front_at_.resize(cells);
     dirty_.assign(cells, 0);
     const std::uint32_t* packet = raster.packet_at.data();
-    for (int y = 0; y < raster.down; ++y) {
+    for (int y = 0; y < fronts.down; ++y) {
         auto cell = static_cast<std::size_t>(y * fronts.stride());
-        for (int x = 0; x < raster.across; ++x, ++cell, ++packet) {
+        for (int x = 0; x < fronts.across; ++x, ++cell, ++packet) {
             if (*packet == BlockRaster::kNone) continue;
             front_at_[cell] = *packet;
-            farthest_[cell] = fronts_[*packet].window.farthest;
+            farthest_[cell] = kInfinity;
         }
     }
     fronts.front_at = front_at_.data();
@@ -294,22 +295,15 @@ std::uint32_t ScreenTileTracer::packet_of(std::size_t candidate) {
 constexpr int kProbeSide = 4;  ///< blocks
 
 ScreenEffort ScreenTileTracer::probe(Vec2f corner, std::uint32_t most_clusters) {
-    constexpr float kSide = kBlockSide;
+    constexpr int kPoints = kBlockSide * kProbeSide;
+    constexpr auto kSide = static_cast<float>(kPoints);
     constexpr std::size_t kBlocks = kProbeSide * kProbeSide;
-    std::array<PointPacket, kBlocks> points;
     std::array<std::uint32_t, kBlocks> cells;
-    for (std::size_t k = 0; k < kBlocks; ++k) {
-        cells[k] = static_cast<std::uint32_t>(k);
-        for (int i = 0; i < kLanes; ++i) {
-            const auto column = static_cast<int>(k % kProbeSide) * kBlockSide + i % kBlockSide;
-            const auto row = static_cast<int>(k / kProbeSide) * kBlockSide + i / kBlockSide;
-            points[k].x[i] = corner.x + static_cast<float>(column) + 0.5F;
-            points[k].y[i] = corner.y + static_cast<float>(row) + 0.5F;
-        }
-    }
-    const BlockRaster raster{corner.x, corner.y, kSide, kProbeSide, kProbeSide, cells, kBlocks};
-    enter({corner.x, corner.y, corner.x + kSide * kProbeSide, corner.y + kSide * kProbeSide});
-    start(points, kBlocks);
+    std::iota(cells.begin(), cells.end(), 0U);
+    const BlockRaster raster{0, 0, kPoints, kPoints, 1.0F, corner, cells, kBlocks};
+    enter({corner.x, corner.y, corner.x + kSide, corner.y + kSide});
+    fronts_.resize(kBlocks);
+    start_cells(view_.projection, raster, store_.wants_shades(), fronts_.data());
     find_fronts(lay_out(raster), most_clusters);
     ScreenEffort effort{used_, 0};
     for (std::size_t k = 0; k < kBlocks; ++k) {

@@ -90,14 +90,24 @@ struct ScreenBox {
     float left, top, right, bottom;  ///< pixels
 };
 
-/// Packets of points that are the cells of a raster on the screen.
+/// Packets of 4 x 4 points of a lattice that are the cells of a raster on the screen.
 struct BlockRaster {
     static constexpr std::uint32_t kNone = 0xFFFFFFFFU;
 
-    float left, top, side;  ///< of the first cell, pixels; points keep off the edges of their cell
-    int across, down;       ///< cells
+    int x = 0, y = 0;           ///< the first cell's first point, which is number x of its row
+    int columns = 0, rows = 0;  ///< of points that are active
+    float spacing = 1.0F;       ///< point x of a row is at (x + 1/2) spacing + offset, pixels
+    Vec2f offset;
     std::span<const std::uint32_t> packet_at;  ///< a cell, row by row: its packet, or kNone
     std::size_t packets = 0;                   ///< so many, which come first, lie on the raster
+
+    /// Cells.
+    int across() const { return (columns + kBlockSide - 1) / kBlockSide; }
+    int down() const { return (rows + kBlockSide - 1) / kBlockSide; }
+    /// Of the first cell, pixels; points keep off the edges of their cell.
+    float left() const { return static_cast<float>(x) * spacing + offset.x; }
+    float top() const { return static_cast<float>(y) * spacing + offset.y; }
+    float side() const { return kBlockSide * spacing; }
 };
 
 /// Traces camera rays of one picture, one thread's share of them.
@@ -116,7 +126,7 @@ class TileTracer {
     /// The same in two steps for packets that lie on a raster, and any others that follow: `find`
     /// looks for all hits, `resolve` tells those of packets `first` and on, of which it is given
     /// the points and rays. So hits can be made use of a few at a time, while they are in the
-    /// cache.
+    /// cache. After `want_shades`, points of packets on the raster need not be filled in.
     virtual void find(const BlockRaster& /*raster*/, std::span<const PointPacket> /*points*/) {}
     virtual void resolve(std::size_t /*first*/, std::span<const PointPacket> points,
                          std::span<const RayPacket> rays, std::span<HitPacket> hits) {

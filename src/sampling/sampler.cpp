@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <limits>
 
 #include "base/multiversion.h"
 
@@ -62,21 +63,41 @@ void extend(ScreenBox& box, Vec2f p) {
 
 constexpr ScreenBox kEmptyBox{kInfinity, kInfinity, -kInfinity, -kInfinity};
 
-/// The screen that blocks of a lattice cover.
-ScreenBox bounds(std::span<const Block> blocks, float spacing) {
-    if (blocks.empty()) return kEmptyBox;
-    int left = blocks.front().x;
-    int top = blocks.front().y;
-    int right = left;
-    int bottom = top;
-    for (const Block& block : blocks) {
-        left = std::min(left, block.x);
-        top = std::min(top, block.y);
-        right = std::max(right, block.x + (block.whole ? kBlockSide : block.columns));
-        bottom = std::max(bottom, block.y + (block.whole ? kBlockSide : block.rows));
+/// Points of a lattice that blocks have, from the first ones to those before the last ones.
+struct LatticeBounds {
+    int left = std::numeric_limits<int>::max();
+    int top = left;
+    int right = std::numeric_limits<int>::min();
+    int bottom = right;
+    std::size_t points = 0;  ///< of all blocks
+
+    explicit LatticeBounds(std::span<const Block> blocks) { add(blocks); }
+
+    void add(std::span<const Block> blocks) {
+        for (const Block& block : blocks) {
+            const int columns = block.whole ? kBlockSide : block.columns;
+            const int rows = block.whole ? kBlockSide : block.rows;
+            left = std::min(left, block.x);
+            top = std::min(top, block.y);
+            right = std::max(right, block.x + columns);
+            bottom = std::max(bottom, block.y + rows);
+            points += static_cast<std::size_t>(columns * rows);
+        }
     }
-    const auto at = [&](int point) { return static_cast<float>(point) * spacing; };
-    return {at(left), at(top), at(right), at(bottom)};
+
+    ScreenBox on_screen(float spacing, Vec2f offset) const {
+        if (points == 0) return kEmptyBox;
+        const auto at = [&](int point) { return static_cast<float>(point) * spacing; };
+        return {at(left) + offset.x, at(top) + offset.y, at(right) + offset.x,
+                at(bottom) + offset.y};
+    }
+};
+
+/// The strips among blocks, which come last.
+std::span<const Block> strips_of(std::span<const Block> blocks) {
+    std::size_t count = 0;
+    while (count < blocks.size() && blocks[blocks.size() - 1 - count].is_strip()) ++count;
+    return blocks.last(count);
 }
 
 ScreenBox bounds(std::span<const Vec2f> points) {
@@ -113,23 +134,35 @@ void Sampler::trace_blocks(std::span<const Block> blocks, Vec2f offset, std::spa
 }
 
 void Sampler::find_blocks(std::span<const Block> blocks, Vec2f offset) {
-    place_blocks(spacing_, blocks, offset, place(blocks.size()).data());
-    const ScreenBox box = shifted(bounds(blocks, spacing_), offset);
+    const std::span<const Block> strips = strips_of(blocks);
+    const std::span<const Block> squares = blocks.first(blocks.size() - strips.size());
+    const LatticeBounds on_raster(squares);
+    LatticeBounds bounds = on_raster;
+    bounds.add(strips);
+    const ScreenBox box = bounds.on_screen(spacing_, offset);
     if (!entered(box)) enter(box);
-    for (const Block& block : blocks) {
-        rays_ += block.whole ? std::size_t{kLanes}
-                             : static_cast<std::size_t>(block.columns) *
-                                   static_cast<std::size_t>(block.rows);
-    }
-    if (!wants_shades_) make_room();
+    rays_ += bounds.points;
     // A few blocks find their own way faster.
-    const std::ptrdiff_t few = wants_borders_ ? 0 : 4;
-    const auto strips = std::ranges::find_if(blocks, &Block::is_strip);
-    found_ = strips - blocks.begin() > few;
+    const std::size_t few = wants_borders_ ? 0 : 4;
+    found_ = squares.size() > few;
+    // Where points lie on a raster is known without them.
+    const std::size_t placed = found_ && wants_shades_ ? squares.size() : 0;
+    const std::span<PointPacket> points = place(blocks.size());
+    place_blocks(spacing_, blocks.subspan(placed), offset, points.subspan(placed).data());
+    if (!wants_shades_) make_room();
     if (found_) {
-        tracer_->find(raster_of({blocks.begin(), strips}, offset), points());
+        BlockRaster raster{on_raster.left,
+                           on_raster.top,
+                           on_raster.right - on_raster.left,
+                           on_raster.bottom - on_raster.top,
+                           spacing_,
+                           offset,
+                           {},
+                           squares.size()};
+        lay_cells(squares, raster);
+        tracer_->find(raster, points);
     } else if (wants_shades_) {
-        tracer_->find({}, points());
+        tracer_->find({}, points);
     }
 }
 
@@ -187,34 +220,18 @@ void Sampler::make_room() {
     if (packets_.size() < placed_) packets_.resize(placed_);
 }
 
-/// Where blocks lie; they are aligned to each other.
-BlockRaster Sampler::raster_of(std::span<const Block> blocks, Vec2f offset) {
-    int x0 = blocks.front().x;
-    int x1 = x0;
-    int y0 = blocks.front().y;
-    int y1 = y0;
-    for (const Block& block : blocks) {
-        x0 = std::min(x0, block.x);
-        x1 = std::max(x1, block.x);
-        y0 = std::min(y0, block.y);
-        y1 = std::max(y1, block.y);
-    }
-    const int across = (x1 - x0) / kBlockSide + 1;
-    const int down = (y1 - y0) / kBlockSide + 1;
-    cells_.assign(static_cast<std::size_t>(across) * static_cast<std::size_t>(down),
+/// Tells a raster which blocks its cells are. Blocks are aligned to each other, and all but those
+/// of the last column and row have all of their points.
+void Sampler::lay_cells(std::span<const Block> blocks, BlockRaster& raster) {
+    const int across = raster.across();
+    cells_.assign(static_cast<std::size_t>(across) * static_cast<std::size_t>(raster.down()),
                   BlockRaster::kNone);
     for (std::size_t k = 0; k < blocks.size(); ++k) {
-        const int column = (blocks[k].x - x0) / kBlockSide;
-        const int row = (blocks[k].y - y0) / kBlockSide;
+        const int column = (blocks[k].x - raster.x) / kBlockSide;
+        const int row = (blocks[k].y - raster.y) / kBlockSide;
         cells_[static_cast<std::size_t>(row * across + column)] = static_cast<std::uint32_t>(k);
     }
-    return {static_cast<float>(x0) * spacing_ + offset.x,
-            static_cast<float>(y0) * spacing_ + offset.y,
-            kBlockSide * spacing_,
-            across,
-            down,
-            cells_,
-            blocks.size()};
+    raster.packet_at = cells_;
 }
 
 void Sampler::place_stencils(Block block, Vec2f offset, std::span<const Vec2f> stencil) {
@@ -224,7 +241,7 @@ void Sampler::place_stencils(Block block, Vec2f offset, std::span<const Vec2f> s
     for (std::size_t k = 0; k < stencil.size(); ++k) {
         place_blocks(spacing_, {&block, 1}, offset + stencil[k], &points_[k]);
     }
-    const ScreenBox own = shifted(bounds({&block, 1}, spacing_), offset);
+    const ScreenBox own = LatticeBounds({&block, 1}).on_screen(spacing_, offset);
     const ScreenBox reach = bounds(stencil);
     const ScreenBox box{own.left + reach.left, own.top + reach.top, own.right + reach.right,
                         own.bottom + reach.bottom};

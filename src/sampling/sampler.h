@@ -96,14 +96,14 @@ class Sampler {
 
     /// The rays of the last call, packet by packet; not after those that identify.
     std::span<const RayPacket> packets() const { return {packets_.data(), placed_}; }
-    /// The points of the last call, packet by packet.
+    /// The points of the last call, packet by packet; after `want_shades` not those of blocks.
     std::span<const PointPacket> points() const { return {points_.data(), placed_}; }
 
     std::size_t rays() const { return rays_; }  ///< traced so far
 
   private:
     void place_stencils(Block block, Vec2f offset, std::span<const Vec2f> stencil);
-    BlockRaster raster_of(std::span<const Block> blocks, Vec2f offset);
+    void lay_cells(std::span<const Block> blocks, BlockRaster& raster);
     void place_points(std::span<const Vec2f> points);
     void trace(std::span<HitPacket> hits);
     void identify(std::span<HitPacket> hits);
