@@ -30,7 +30,7 @@ FoldGraph::FoldGraph(std::span<const Segment> lines)
     for (const std::uint32_t k : folds_) {
         for (const FoldEnd end : {FoldEnd{k, false}, FoldEnd{k, true}}) {
             const auto& meeting = table_.add(point(end), number(end));
-            if (meeting.count > 1) unite(k, end_of(meeting.ends[0]).fold);
+            if (meeting.count > 1) unite(k, end_of(meeting.first).fold);
         }
     }
 }
@@ -50,11 +50,7 @@ std::vector<std::uint32_t> FoldGraph::roots() const {
 
 std::vector<FoldEnd> FoldGraph::loose_ends() const {
     std::vector<FoldEnd> loose;
-    for (const std::uint32_t k : folds_) {
-        for (const FoldEnd end : {FoldEnd{k, false}, FoldEnd{k, true}}) {
-            if (ends_at(point(end))) loose.push_back(end);
-        }
-    }
+    table_.for_each_alone([&](std::uint32_t end) { loose.push_back(end_of(end)); });
     std::ranges::sort(loose, {}, [&](FoldEnd end) {
         const Vec2f p = point(end);
         return std::tuple(p.y, p.x);
@@ -63,9 +59,9 @@ std::vector<FoldEnd> FoldGraph::loose_ends() const {
 }
 
 std::optional<FoldEnd> FoldGraph::next(FoldEnd end) const {
-    const auto& [count, ends] = table_.at(point(end));
-    if (count != 2) return {};
-    return end_of(ends[end_of(ends[0]).fold == end.fold ? 1 : 0]);
+    const auto& meeting = table_.at(point(end));
+    if (meeting.count != 2) return {};
+    return end_of(meeting.other(number(end)));
 }
 
 Vec2f FoldGraph::back_from(FoldEnd end, float enough) const {

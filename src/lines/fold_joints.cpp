@@ -46,6 +46,7 @@ class JointEaser {
     FoldJoints run() {
         if (folds_.empty()) return {};
         meet();
+        find_loose();
         drop_hairs();
         find_joints();
         find_overlaps();
@@ -91,22 +92,20 @@ class JointEaser {
 
     bool is_fold(std::uint32_t k) const { return lines_[k].type == LineType::self_occlusion; }
 
-    template <class Visit>
-    void for_each_end(Visit visit) const {
+    /// Says which ends meet.
+    void meet() {
+        table_ = EndTable(2 * folds_.size());
         for (const std::uint32_t k : folds_) {
             if (gone_[k] != 0) continue;
-            visit(2 * k);
-            visit(2 * k + 1);
+            table_.add(lines_[k].a, 2 * k);
+            table_.add(lines_[k].b, 2 * k + 1);
         }
     }
 
-    /// Says which ends meet, and which end loosely.
-    void meet() {
-        table_ = EndTable(2 * folds_.size());
-        for_each_end([&](std::uint32_t end) { table_.add(point(end), end); });
+    /// Which of them meet no other one.
+    void find_loose() {
         loose_.clear();
-        for_each_end([&](std::uint32_t end) {
-            if (table_.at(point(end)).count != 1) return;
+        table_.for_each_alone([&](std::uint32_t end) {
             loose_.push_back({end, point(end), direction(end, 3.0F * spacing_) * -1.0F});
         });
         std::ranges::sort(loose_, {}, [](const LooseEnd& e) {
@@ -131,9 +130,8 @@ class JointEaser {
 
     /// The end of another segment at which the line goes on; kNone if there is not just one.
     std::uint32_t next_to(std::uint32_t end) const {
-        const auto& [count, ends] = table_.at(point(end));
-        if (count != 2) return kNone;
-        return ends[ends[0] == end ? 1 : 0];
+        const auto& meeting = table_.at(point(end));
+        return meeting.count == 2 ? meeting.other(end) : kNone;
     }
 
     /// Away from an end, along its segment and on, for `far` pixels or until the line ends.
@@ -179,8 +177,13 @@ class JointEaser {
             }
         }
         if (found_.dropped.empty()) return;
-        for (const std::size_t k : found_.dropped) gone_[k] = 1;
-        meet();
+        for (const std::size_t k : found_.dropped) {
+            if (gone_[k] != 0) continue;  // as part of another one
+            gone_[k] = 1;
+            table_.remove(lines_[k].a, static_cast<std::uint32_t>(2 * k));
+            table_.remove(lines_[k].b, static_cast<std::uint32_t>(2 * k + 1));
+        }
+        find_loose();
     }
 
     void drop(std::span<const std::uint32_t> ends) {

@@ -78,11 +78,12 @@ class GapCloser {
 
     void find_loose() {
         for_each_end([&](Vec2f point, std::uint32_t end) { table_.add(point, end); });
-        for_each_end([&](Vec2f point, std::uint32_t number) {
+        table_.for_each_alone([&](std::uint32_t number) {
             const Segment& line = lines_[number / 2];
-            if (table_.at(point).count > 1 || line.strength < settings_.least_strength) return;
-            End end{point, number / 2, number % 2 != 0};
-            end.way = unit(point - back_from(end));
+            if (line.strength < settings_.least_strength) return;
+            const bool at_b = number % 2 != 0;
+            End end{at_b ? line.b : line.a, number / 2, at_b};
+            end.way = unit(end.point - back_from(end));
             loose_.push_back(end);
         });
         std::ranges::sort(loose_, {}, [](const End& end) {
@@ -100,9 +101,9 @@ class GapCloser {
             const Vec2f from = end.at_b ? line.b : line.a;
             const Vec2f to = end.at_b ? line.a : line.b;
             walked += length(to - from);
-            const auto& [count, ends] = table_.at(to);
-            if (walked >= enough || count != 2 || step == 8) return to;
-            const std::uint32_t next = ends[ends[0] / 2 == end.segment ? 1 : 0];
+            const auto& meeting = table_.at(to);
+            if (walked >= enough || meeting.count != 2 || step == 8) return to;
+            const std::uint32_t next = meeting.other(2 * end.segment + (end.at_b ? 0 : 1));
             end = {to, next / 2, next % 2 != 0};
         }
     }

@@ -28,10 +28,12 @@ class SegmentSquares {
   public:
     explicit SegmentSquares(std::span<const Segment> segments) {
         if (segments.empty()) return;
-        lower_ = middle(segments[0]);
+        std::vector<Vec2f> middles;
+        middles.reserve(segments.size());
+        for (const Segment& segment : segments) middles.push_back(middle(segment));
+        lower_ = middles[0];
         Vec2f upper = lower_;
-        for (const Segment& segment : segments) {
-            const Vec2f p = middle(segment);
+        for (const Vec2f p : middles) {
             lower_ = {std::min(lower_.x, p.x), std::min(lower_.y, p.y)};
             upper = {std::max(upper.x, p.x), std::max(upper.y, p.y)};
         }
@@ -41,17 +43,18 @@ class SegmentSquares {
         while ((size.x / side_ + 1.0F) * (size.y / side_ + 1.0F) > few) side_ *= 2.0F;
         across_ = column(upper) + 1;
         down_ = row(upper) + 1;
-        const auto square = [&](Vec2f p) {
-            return static_cast<std::size_t>(row(p) * across_ + column(p));
-        };
+        std::vector<std::uint32_t> squares;
+        squares.reserve(segments.size());
+        for (const Vec2f p : middles) {
+            squares.push_back(static_cast<std::uint32_t>(row(p) * across_ + column(p)));
+        }
         // Counted two places ahead: filling moves every start to its end, the next one's start.
         starts_.assign(static_cast<std::size_t>(across_ * down_) + 2, 0);
-        for (const Segment& segment : segments) ++starts_[square(middle(segment)) + 2];
+        for (const std::uint32_t square : squares) ++starts_[square + 2];
         std::partial_sum(starts_.begin(), starts_.end(), starts_.begin());
         entries_.resize(segments.size());
         for (std::uint32_t k = 0; k < segments.size(); ++k) {
-            const Vec2f p = middle(segments[k]);
-            entries_[starts_[square(p) + 1]++] = {p, k};
+            entries_[starts_[squares[k] + 1]++] = {middles[k], k};
         }
     }
 
