@@ -49,20 +49,14 @@ ClusterBands::ClusterBands(const BoundsPyramid& pyramid, std::size_t count, Vec2
       of_row_(kBands * words_),
       cover_(centre) {
     lay_axes(pyramid.at(pyramid.top(), 0), centre);
-    constexpr std::size_t kPackets = 32;
-    constexpr std::size_t kWords = 8;
-    parallel_ranges(bounds_.size(), kPackets, [&](std::size_t begin, std::size_t end) {
+    constexpr std::size_t kGrain = 32;
+    parallel_ranges(bounds_.size(), kGrain, [&](std::size_t begin, std::size_t end) {
         for (std::size_t k = begin; k < end; ++k) pyramid.at(0, k);  // projects it
     });
+    // Either takes about as long as the other.
     parallel_ranges(2, 1, [&](std::size_t begin, std::size_t end) {
         if (begin == 0) sort(pyramid);
         if (end == 2) cover(pyramid);
-    });
-    parallel_ranges(words_, kWords, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t word = begin; word < end; ++word) {
-            take_bounds(pyramid, word);
-            mark_bands(word);
-        }
     });
 }
 
@@ -170,7 +164,7 @@ void ClusterBands::find(const Window& window, std::vector<std::uint64_t>& places
     places.resize(words_);
 }
 
-/// By depth, then by number.
+/// By depth, then by number; and tells which bands they reach into.
 void ClusterBands::sort(const BoundsPyramid& pyramid) {
     std::vector<Entry> entries(order_.size());
     for (std::uint32_t k = 0; k < entries.size(); ++k) {
@@ -178,18 +172,13 @@ void ClusterBands::sort(const BoundsPyramid& pyramid) {
     }
     radix_sort(entries);
     for (std::size_t place = 0; place < entries.size(); ++place) {
-        order_[place] = entries[place].cluster;
-    }
-}
-
-/// Of 64 places, in order.
-void ClusterBands::take_bounds(const BoundsPyramid& pyramid, std::size_t word) {
-    for (std::size_t place = word * 64; place < std::min(word * 64 + 64, order_.size()); ++place) {
-        const std::uint32_t cluster = order_[place];
+        const std::uint32_t cluster = entries[place].cluster;
+        order_[place] = cluster;
         const BoundsPacket& from = pyramid.at(0, cluster / kLanes);
         from.copy(static_cast<int>(cluster % kLanes), bounds_[place / kLanes],
                   static_cast<int>(place % kLanes));
     }
+    for (std::size_t word = 0; word < words_; ++word) mark_bands(word);
 }
 
 /// In any order.

@@ -89,7 +89,6 @@ class ClusterBands {
     };
 
     void sort(const BoundsPyramid& pyramid);
-    void take_bounds(const BoundsPyramid& pyramid, std::size_t word);
     void cover(const BoundsPyramid& pyramid);
     void lay_axes(const BoundsPacket& top, Vec2f centre);
     int used(std::size_t packet) const;

@@ -59,10 +59,14 @@ LineThinning thinning_of(const Edges& edges,
     for (const auto& finder : finders) {
         if (!finder) continue;
         thinning.all += finder->density();
-        thinning.direct += goes_on ? finder->direct_density() : finder->density();
+        if (goes_on) thinning.direct += finder->direct_density();
     }
     thinning.all.finish();
-    thinning.direct.finish();
+    if (goes_on) {
+        thinning.direct.finish();
+    } else {
+        thinning.direct = thinning.all;
+    }
     return thinning;
 }
 
@@ -103,7 +107,7 @@ LineSearch::LineSearch(const Edges& edges, WorkLoop& loop)
 
 /// Calls of the loop's body, but for work beside.
 std::size_t LineSearch::items() const {
-    const std::size_t mends = !edges_.mends_lines() ? 0 : empty_.empty() ? 1 : 2;
+    const std::size_t mends = edges_.mends_lines() ? 1 : 0;
     const std::size_t ridges = ridges_ ? ridges_->strips() + ridges_->bands() : 0;
     return seeing_.size() + ridges + mends + (fringes_.empty() ? 0 : seeing_.size()) +
            empty_.size();
@@ -134,6 +138,11 @@ void LineSearch::search(std::size_t tile, std::size_t worker) {
     found_.hidden[tile] = behind_[worker]->search(edges_.search_tiles[tile], own);
 }
 
+/// From now on all finders see nothing but points, and empty tiles.
+void LineSearch::end_search() {
+    for (std::size_t worker = 0; worker < finders_.size(); ++worker) finder(worker).end_search();
+}
+
 /// There is nothing to be found, but there are pixels to put.
 void LineSearch::fill_empty(std::size_t tile, std::size_t worker) {
     finder(worker).search(edges_.search_tiles[tile]);
@@ -148,38 +157,32 @@ void LineSearch::finish_fringe(std::size_t tile) const {
                        background, edges_.pipeline.film);
 }
 
-/// Mending is for one thread for most of the time. While it asks for rays, the others find ridges
-/// and put the pixels to which lines of several tiles add; then they fill the empty tiles.
+/// Mending is for one thread for most of the time. The others find ridges, put the pixels to which
+/// lines of several tiles add, and fill the empty tiles.
 void LineSearch::mend(const SideWork& beside) {
     if (ridges_) {
         loop_.run(ridges_->strips(),
                   [&](std::size_t k, std::size_t worker) { ridges_->trace_strip(k, worker); });
     }
-    LineMender mender(edges_, finders_, found_.tiles, found_.toned);
     const std::size_t mends = edges_.mends_lines() ? 1 : 0;
+    if (mends > 0) end_search();
+    LineMender mender(edges_, finders_, found_.tiles, found_.toned);
     const std::size_t bands = ridges_ ? ridges_->bands() : 0;
     const std::size_t fringes = fringes_.empty() ? 0 : seeing_.size();
-    loop_.run(mends + bands + fringes + beside.items, [&](std::size_t i, std::size_t worker) {
+    const std::size_t items = mends + bands + fringes + empty_.size() + beside.items;
+    loop_.run(items, [&](std::size_t i, std::size_t worker) {
         if (i < mends) {
-            mender.mend_folds();
-            if (empty_.empty()) mender.join();
+            mender.mend();
         } else if (i -= mends; i < bands) {
             ridges_->search_band(i, worker);
         } else if (i -= bands; i < fringes) {
             finish_fringe(seeing_[i]);
+        } else if (i -= fringes; i < empty_.size()) {
+            fill_empty(empty_[i], worker);
         } else {
-            beside.body(i - fringes);
+            beside.body(i - empty_.size());
         }
     });
-    if (!empty_.empty()) {
-        loop_.run(1 + empty_.size(), [&](std::size_t i, std::size_t worker) {
-            if (i == 0) {
-                mender.join();
-            } else {
-                fill_empty(empty_[i - 1], worker);
-            }
-        });
-    }
     serial_ += mender.stats();
 }
 

@@ -62,6 +62,7 @@ class LineSearch {
     std::size_t items() const;
     LineFinder& finder(std::size_t worker);
     void search(std::size_t tile, std::size_t worker);
+    void end_search();
     void fill_empty(std::size_t tile, std::size_t worker);
     void finish_fringe(std::size_t tile) const;
     LineDensity take_ridges();

@@ -11,27 +11,16 @@
 
 namespace ink {
 
-void LineMender::mend_folds() {
-    double ms = 0.0;
-    {
-        const Timer timer(ms);
-        if (!has_breaks()) return;
-        gather();
-        std::vector<FoldWorker> workers;
-        for (std::unique_ptr<LineFinder>& finder : finders_) {
-            if (!finder) finder = std::make_unique<LineFinder>(edges_);
-            finder->end_search();
-            workers.push_back({finder->more_samples(), [&](Vec2f low, Vec2f high) {
-                                   finder->enter({low.x, low.y, high.x, high.y});
-                               }});
-        }
-        const FoldLoop loop = [&](std::size_t count, const auto& body) {
-            parallel_for(count, static_cast<int>(workers.size()), body);
-        };
-        repairs_ =
-            ink::mend_folds(lines_, *squares_, edges_.viewpoint, spacing(), width(), workers, loop);
-    }
-    stats_.lines_ms += ms * static_cast<double>(finders_.size());  // all threads are at it, or wait
+void LineMender::mend() {
+    const Timer timer(stats_.lines_ms);
+    if (!has_breaks()) return;
+    gather();
+    mend_folds();
+    lines_.insert(lines_.end(), repairs_.bridges.begin(), repairs_.bridges.end());
+    close_gaps();
+    ease_joints();
+    if (edges_.tones) repair_toned();
+    change();
 }
 
 bool LineMender::has_breaks() const {
@@ -64,14 +53,17 @@ float LineMender::width() const {
     return edges_.ink.styles[edges_.style_of(LineType::self_occlusion, 0)].width_px;
 }
 
-void LineMender::join() {
-    const Timer timer(stats_.lines_ms);
-    if (lines_.empty()) return;
-    lines_.insert(lines_.end(), repairs_.bridges.begin(), repairs_.bridges.end());
-    close_gaps();
-    ease_joints();
-    if (edges_.tones) repair_toned();
-    change();
+void LineMender::mend_folds() {
+    std::vector<FoldWorker> workers;
+    for (const std::unique_ptr<LineFinder>& finder : finders_) {
+        workers.push_back({finder->more_samples(), [&](Vec2f low, Vec2f high) {
+                               finder->enter({low.x, low.y, high.x, high.y});
+                           }});
+    }
+    repairs_ = ink::mend_folds(lines_, *squares_, edges_.viewpoint, spacing(), width(), workers,
+                               [&](std::size_t count, const auto& body) {
+                                   parallel_for(count, static_cast<int>(workers.size()), body);
+                               });
 }
 
 void LineMender::close_gaps() {

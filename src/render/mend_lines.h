@@ -13,19 +13,15 @@
 namespace ink {
 
 /// Joins and drops pieces of self-occlusions, and closes gaps of these and of creases, among the
-/// lines found in all tiles, which must have kept their segments. In two steps: the first one needs
-/// rays.
+/// lines found in all tiles, which must have kept their segments.
 class LineMender {
   public:
-    /// One finder a thread, made where there is none yet; they count their rays.
-    LineMender(const Edges& edges, std::vector<std::unique_ptr<LineFinder>>& finders,
+    /// One finder a thread, which have ended their search, for rays; they count these.
+    LineMender(const Edges& edges, const std::vector<std::unique_ptr<LineFinder>>& finders,
                std::vector<TileLines>& found, std::vector<std::vector<Segment>>& toned)
         : edges_(edges), finders_(finders), found_(found), toned_(toned) {}
 
-    /// See ink::mend_folds. From then on the finders see nothing but points.
-    void mend_folds();
-    /// Closes what gaps are left, eases joints, and changes the lines.
-    void join();
+    void mend();
 
     const RenderStats& stats() const { return stats_; }
 
@@ -37,6 +33,7 @@ class LineMender {
 
     bool has_breaks() const;
     void gather();
+    void mend_folds();
     float spacing() const { return 1.0F / static_cast<float>(edges_.q); }
     float width() const;
     void close_gaps();
@@ -45,7 +42,7 @@ class LineMender {
     void change();
 
     const Edges& edges_;
-    std::vector<std::unique_ptr<LineFinder>>& finders_;
+    const std::vector<std::unique_ptr<LineFinder>>& finders_;
     std::vector<TileLines>& found_;
     std::vector<std::vector<Segment>>& toned_;
     std::vector<Segment> lines_;  ///< seen directly, but not between faces; then what joins them
