@@ -6,6 +6,7 @@
 #include <exception>
 #include <mutex>
 #include <thread>
+#include <utility>
 
 #include "base/parallel.h"
 
@@ -16,6 +17,13 @@ namespace {
 /// That `with_threads` allows to this thread; 0: all of the machine's.
 thread_local int allowed_threads = 0;
 
+/// Whose call this thread is in.
+struct Place {
+    int threads = 0;  ///< of the loop; 0: in none
+    std::size_t worker = 0;
+};
+thread_local Place place;
+
 }  // namespace
 
 int hardware_threads() {
@@ -25,10 +33,17 @@ int hardware_threads() {
 void parallel_for(std::size_t count, int threads,
                   const std::function<void(std::size_t, std::size_t)>& body) {
     if (threads == 0) threads = hardware_threads();
+    if (place.threads == threads) {
+        // As in an arena of TBB, where a thread is the same worker in a loop within a loop: others
+        // may be in calls of the outer one.
+        for (std::size_t i = 0; i < count; ++i) body(i, place.worker);
+        return;
+    }
     std::atomic<std::size_t> next{0};
     std::mutex mutex;
     std::exception_ptr error;
     const auto work = [&](std::size_t worker) {
+        const Place outside = std::exchange(place, Place{threads, worker});
         try {
             // Relaxed: what bodies share, they must put in order themselves.
             for (std::size_t i = 0; (i = next.fetch_add(1, std::memory_order_relaxed)) < count;) {
@@ -39,6 +54,7 @@ void parallel_for(std::size_t count, int threads,
             const std::scoped_lock lock(mutex);
             if (!error) error = std::current_exception();
         }
+        place = outside;
     };
     {
         std::vector<std::jthread> others;

@@ -158,7 +158,8 @@ void LineSearch::finish_fringe(std::size_t tile) const {
 }
 
 /// Mending is for one thread for most of the time. The others find ridges, put the pixels to which
-/// lines of several tiles add, and fill the empty tiles.
+/// lines of several tiles add, and fill the empty tiles. What asks for rays and what fills tiles
+/// share the finders: in loops within a loop, too, a thread is the same worker.
 void LineSearch::mend(const SideWork& beside) {
     if (ridges_) {
         loop_.run(ridges_->strips(),
