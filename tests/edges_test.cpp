@@ -283,56 +283,6 @@ TEST_P(PapersLook, IsThatOfStencilsWithManyRings) {
 
 INSTANTIATE_TEST_SUITE_P(OfMetric, PapersLook, testing::Values("linear", "power:10"));
 
-// Lines denser than they are wide
-
-/// Spheres side by side in a square of 100 x 100, in a picture of `side` pixels.
-Plane<float> ink_of_packed_spheres(int side, double density, double width_px = 3.0) {
-    std::mt19937 random(3);
-    std::vector<Sphere> spheres;
-    for (int k = 0; k < 20000; ++k) {
-        const Vec3f p = uniform_point(random) - Vec3f{0.5F, 0.5F, 0.5F};
-        spheres.push_back({{p.x * 120.0F, p.y * 120.0F, p.z * 4.0F}, 1.2F});
-    }
-    Settings settings = plan_view({side, side}, width_px);
-    settings.view.orthographic = 100.0;
-    settings.line_density = density;
-    return plane(draw(Scene({sphere_object(spheres)}), settings), "line.A");
-}
-
-TEST(DenseLines, BecomeAToneHoweverSmallThePicture) {
-    double before = 0.0;
-    for (const int side : {600, 400, 280, 200, 140, 100, 70, 50, 35}) {
-        const double tone = mean(ink_of_packed_spheres(side, Settings{}.line_density));
-        EXPECT_LT(tone, 0.4) << side;
-        EXPECT_GT(tone, 0.15) << side;
-        // No step in tone between pictures of similar size.
-        EXPECT_NEAR(tone, before > 0.0 ? before : tone, 0.12) << side;
-        before = tone;
-    }
-    EXPECT_GT(mean(ink_of_packed_spheres(100, 1.0)), 0.95);
-}
-
-TEST(DenseLines, KeepTheirWidthWhereThereIsRoom) {
-    const Plane<float> sparse = ink_of_packed_spheres(1400, 0.75, 1.5);
-    EXPECT_EQ(sparse, ink_of_packed_spheres(1400, 1.0, 1.5));
-}
-
-TEST(DenseLines, LeaveABundleOfThreeTheirWidth) {
-    for (const float width : {2.0F, 3.0F, 8.0F}) {
-        LineDensity density(0, 0, 1000, 1000, width);
-        for (int line = 0; line < 3; ++line) {
-            const float y = 500.0F + 2.0F * width * static_cast<float>(line);
-            for (int x = 0; x < 1000; ++x) density.add({static_cast<float>(x), y}, 1.0F, width);
-        }
-        density.finish();
-        const auto most = static_cast<float>(Settings{}.line_density);
-        for (int y = 450; y < 600; ++y) {
-            const float share = density.at({500.0F, static_cast<float>(y)});
-            EXPECT_GT(width_scale(share, most), 0.99F) << width << " " << y;
-        }
-    }
-}
-
 // Invariances
 
 void expect_same_for_tiles(const Scene& scene, Settings settings) {

@@ -213,9 +213,9 @@ TEST(Svg, ThinsLinesWhereTheyAreDenseAsThePixelsDo) {
     // A raster of small balls that grows coarser to one side.
     std::vector<Sphere> balls;
     for (int i = 0; i < 40; ++i) {
-        for (int j = 0; j < 60; ++j) {
+        for (int j = 0; j < 30; ++j) {
             const float size = 0.1F + 0.01F * static_cast<float>(i);
-            balls.push_back({{0.05F * static_cast<float>(i * i), size * static_cast<float>(j), 0},
+            balls.push_back({{0.0125F * static_cast<float>(i * i), size * static_cast<float>(j), 0},
                              0.8F * size});
         }
     }

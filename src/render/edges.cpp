@@ -119,7 +119,9 @@ Edges::Edges(const Pipeline& shared)
       styles_by_type(!styles_by_object && !tells_inner && style_levels == 1),
       ink(ink_settings(shared)),
       halo_px(static_cast<float>(shared.settings.halo_px())),
-      depth_range(shared.shader.depth_cue().range()) {
+      depth_range(shared.shader.depth_cue().range()),
+      small_things(shared.scene, shared.ids, shared.camera,
+                   static_cast<float>(shared.settings.line_density), ink.widest()) {
     if (halo_px > 0.0F) {
         halo_style = ink.styles.size();
         const Settings& settings = shared.settings;
@@ -222,11 +224,17 @@ bool Edges::cues_depth() const {
     return pipeline.settings.line_fade > 0.0 || pipeline.settings.line_taper > 0.0;
 }
 
-void Edges::apply_distance(Segment& segment) const {
-    if (!cues_depth()) return;
-    const float depth = depth_at((segment.a + segment.b) * 0.5F, segment.t);
-    segment.strength *= 1.0F - static_cast<float>(pipeline.settings.line_fade) * depth;
-    segment.width_scale = 1.0F - static_cast<float>(pipeline.settings.line_taper) * depth;
+void Edges::temper(Segment& segment) const {
+    const Vec2f middle = (segment.a + segment.b) * 0.5F;
+    if (cues_depth()) {
+        const float depth = depth_at(middle, segment.t);
+        segment.strength *= 1.0F - static_cast<float>(pipeline.settings.line_fade) * depth;
+        segment.width_scale = 1.0F - static_cast<float>(pipeline.settings.line_taper) * depth;
+    }
+    if (small_things.any()) {
+        const float width = ink.styles[style_of(segment)].width_px * segment.width_scale;
+        segment.width_scale *= small_things.width_scale(segment.owner, middle, segment.t, width);
+    }
 }
 
 std::size_t Edges::search_tile_at(Vec2f point) const {

@@ -14,6 +14,7 @@
 #include "lines/segment.h"
 #include "render/edge_smoothing.h"
 #include "render/pipeline.h"
+#include "render/small_things.h"
 #include "render/tiles.h"
 #include "sampling/mesh_walk.h"
 #include "sampling/samples.h"
@@ -76,8 +77,11 @@ struct Edges {
     float depth_at(Vec2f point, float t) const;
     /// Whether lines get fainter or thinner the farther back they lie.
     bool cues_depth() const;
+    /// Whether some lines are drawn with less than the width of their style for what they are lines
+    /// of: something far away, or small.
+    bool tempers_lines() const { return cues_depth() || small_things.any(); }
     /// Makes a line so.
-    void apply_distance(Segment& segment) const;
+    void temper(Segment& segment) const;
 
     const Pipeline& pipeline;
     int q;  ///< lattice points along a pixel's side
@@ -104,6 +108,7 @@ struct Edges {
     float halo_px;
     std::size_t halo_style = 0;  ///< of the paper that halos show, if there are any
     float depth_range;           ///< of the scene as the camera sees it, scene units
+    SmallThings small_things;
     /// Empty, for the tiles' workers to start from.
     LineDensity no_lines;
     Viewpoint viewpoint;

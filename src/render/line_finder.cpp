@@ -248,8 +248,8 @@ void LineFinder::find_tones() {
 
 /// Keeps the segments at hand, and smooths the shading along them.
 void LineFinder::keep() {
-    if (edges_.cues_depth()) {
-        for (Segment& segment : segments_) edges_.apply_distance(segment);
+    if (edges_.tempers_lines()) {
+        for (Segment& segment : segments_) edges_.temper(segment);
     }
     if (edges_.halo_px > 0.0F && front_) {
         for (Segment& segment : segments_) segment.gap = gap_behind(segment);

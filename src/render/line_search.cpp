@@ -195,7 +195,7 @@ LineDensity LineSearch::take_ridges() {
     {
         const Timer timer(ms);
         ridges_->take(mask_of(edges_, found_.tiles), [&](Segment& ridge) {
-            edges_.apply_distance(ridge);
+            if (edges_.tempers_lines()) edges_.temper(ridge);
             const InkStroke stroke = make_ink_stroke(ridge, edges_.style_of(ridge));
             density.add(stroke, edges_.ink.styles[stroke.style].width_px * stroke.width_scale);
             keep(edges_, ridge, found_);

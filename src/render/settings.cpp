@@ -293,9 +293,8 @@ std::vector<Setting> make_table() {
          [](S& s, Text t) { s.line_width = read_length(t); },
          [](const S& s) { return print(s.line_width); }, false, length_px(0.25, 20)},
         {"line-density", "Lines", "F",
-         "Method edges: share of an area that lines may cover; denser ones get thinner, 1 lets "
-         "them "
-         "be",
+         "Method edges: share of an area, or of a small ball or stick, that lines may cover; "
+         "where they would cover more they get thinner, 1 lets them be",
          [](S& s, Text t) { s.line_density = read_number(t, 0.05, 1); },
          [](const S& s) { return fmt::format("{}", s.line_density); }, false, number(0.05, 1)},
         {"line-color", "Lines", "COLOR", "Colour of the lines",
