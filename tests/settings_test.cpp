@@ -95,7 +95,7 @@ const std::map<std::string_view, Texts> kValues{
     {"hidden", {"none", "solid", "dashed", "dashed:6,2.5"}},
     {"hidden-layers", {"1", "4", "64"}},
     {"specular-depth", {"0", "4", "16"}},
-    {"fill", {"none", "flat", "image"}},
+    {"fill", {"auto", "none", "flat", "image"}},
     {"curve-tolerance", {"0.01", "0.1", "10"}},
     {"min-length", {"0px", "2.5px", "1mm", "0.5%"}},
     {"line-color", {"#000000", "#0a0b0c"}},

@@ -9,6 +9,7 @@
 #include <random>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "line_art.h"
@@ -342,6 +343,35 @@ TEST(Svg, CanCarryTheShadedPictureWithoutLines) {
     EXPECT_EQ(text.find("id=\"regions\""), std::string::npos);
     settings.compose = Compose::lines;
     EXPECT_EQ(svg_of(draw(acetaminophen(), settings).art).find("<image"), std::string::npos);
+}
+
+/// Two halves of a stick, of a red and a blue atom, that count as one.
+std::vector<Object> stick_of_two_colors() {
+    Object stick;
+    stick.name = "stick";
+    stick.kind = ObjectKind::molecule;
+    Glyphs halves;
+    halves.shape = {.kind = GlyphKind::frustum, .capped = false};
+    halves.placements = {placement_between({-2, 0, 0}, {0, 0, 0}, 0.5),
+                         placement_between({0, 0, 0}, {2, 0, 0}, 0.5)};
+    halves.colors = {{255, 0, 0}, {0, 0, 255}};
+    stick.shape = std::move(halves);
+    stick.usual_ids = IdLevel::object;
+    return {std::move(stick)};
+}
+
+TEST(Svg, ShowsAGeometryOfSeveralColoursAsItsShadedPicture) {
+    const auto regions_and_image = [](std::vector<Object> objects, Settings settings) {
+        const LineArt art = draw(Scene(std::move(objects)), settings).art;
+        return std::pair(!art.regions.empty(), art.image.has_value());
+    };
+    Settings settings = picture(64);
+    EXPECT_EQ(regions_and_image(stick_of_two_colors(), settings), std::pair(false, true));
+    settings.ids = IdLevel::primitive;
+    EXPECT_EQ(regions_and_image(stick_of_two_colors(), settings), std::pair(true, false));
+    settings.ids.reset();
+    settings.fill = Fill::flat;
+    EXPECT_EQ(regions_and_image(stick_of_two_colors(), settings), std::pair(true, false));
 }
 
 TEST(Json, HoldsThePolylines) {

@@ -85,7 +85,8 @@ const Words<LegendPlace> kLegendPlaces{{{"auto", LegendPlace::automatic},
                                         {"top-right", LegendPlace::top_right},
                                         {"bottom-left", LegendPlace::bottom_left},
                                         {"bottom-right", LegendPlace::bottom_right}}};
-const Words<Fill> kFills{{{"none", Fill::none},
+const Words<Fill> kFills{{{"auto", Fill::automatic},
+                          {"none", Fill::none},
                           {"flat", Fill::flat},
                           {"two-tone", Fill::two_tone},
                           {"image", Fill::image}}};
@@ -403,8 +404,8 @@ std::vector<Setting> make_table() {
 
         {"fill", "Curves", "WHAT",
          "What SVG and PDF show below the lines: flat (each geometry filled with one colour), "
-         "two-tone (one for its light, one for its shade), image (the shaded picture, embedded) "
-         "or none",
+         "two-tone (one for its light, one for its shade), image (the shaded picture, embedded), "
+         "none, or auto: flat, but image where one geometry has several colours, as sticks have",
          [](S& s, Text t) { s.fill = kFills.read(t); },
          [](const S& s) { return kFills.print(s.fill); }, false, one_of(kFills)},
         {"curve-tolerance", "Curves", "PX",

@@ -45,6 +45,7 @@ inline constexpr int kMostSpecularDepth = 16;
 
 /// What SVG and PDF show below the lines.
 enum class Fill : std::uint8_t {
+    automatic,  ///< flat, or the image where a geometry has several colours
     none,
     flat,      ///< each geometry filled with one colour
     two_tone,  ///< its light and its shaded part with one colour each
@@ -119,7 +120,7 @@ struct Settings {
     std::vector<Aov> aovs;
 
     // Lines as curves: SVG, PDF and JSON.
-    Fill fill = Fill::flat;
+    Fill fill = Fill::automatic;
     double curve_tolerance_px = 0.1;
     Length min_length{0.0, Length::Unit::px};
 

@@ -9,6 +9,7 @@
 #include "sampling/line_ids.h"
 #include "vector/region_colors.h"
 #include "vector/regions.h"
+#include "vector/several_colors.h"
 #include "vector/tone_lines.h"
 
 namespace ink {
@@ -63,6 +64,12 @@ bool is_inner(const LineIds& ids, const Chain& chain) {
            ids.of_one_whole(chain.left, chain.right);
 }
 
+Fill fill_of(const Scene& scene, const Settings& settings, const LineIds& ids) {
+    if (settings.compose == Compose::lines) return Fill::none;
+    if (settings.fill != Fill::automatic) return settings.fill;
+    return has_geometry_of_several_colors(scene, ids) ? Fill::image : Fill::flat;
+}
+
 /// Moves the lines that were asked for into the drawing, with their styles.
 void add_lines(const Settings& settings, const LineIds& ids, const LineThinning& thinning,
                CurveGraph layer, LineArt& art) {
@@ -107,7 +114,8 @@ LineArt make_line_art(const Scene& scene, const Settings& settings, const Drawin
     const int levels = last_level(drawing) + 1;
     CurveGraph direct =
         curves_of(levels == 1 ? drawing.segments : of_level(drawing, 0), drawing.spacing, settings);
-    const Fill fill = settings.compose == Compose::lines ? Fill::none : settings.fill;
+    const LineIds ids(scene, settings.ids);
+    const Fill fill = fill_of(scene, settings, ids);
     if (drawing.tones) drop_spots(direct);
     if (fill == Fill::flat || fill == Fill::two_tone) {
         art.regions = make_regions(direct.graph, direct.curves, drawing.lower, drawing.upper);
@@ -120,7 +128,6 @@ LineArt make_line_art(const Scene& scene, const Settings& settings, const Drawin
     if (fill == Fill::image) art.image = image;
 
     if (!settings.draws_lines()) return art;
-    const LineIds ids(scene, settings.ids);
     add_lines(settings, ids, drawing.thinning, std::move(direct), art);
     for (int level = 1; level < levels; ++level) {
         add_lines(settings, ids, drawing.thinning,
