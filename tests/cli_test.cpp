@@ -241,6 +241,22 @@ TEST_F(CommandLine, InfoTellsWhatIsInAFile) {
     EXPECT_EQ(outcome.err, "");
 }
 
+TEST_F(CommandLine, InfoNamesWhatCanBeSelected) {
+    folder_.write("a.pdb",
+                  "ATOM      1  CA  ALA A   1       0.000   0.000   0.000  1.00 10.00           C\n"
+                  "ATOM      2  CA  GLY B   1       9.000   0.000   0.000  1.00 10.00           C\n"
+                  "HETATM    3 FE   HEM B   2       5.000   5.000   0.000  1.00 10.00          FE\n"
+                  "HETATM    4  NA  HEM B   2       5.000   7.000   0.000  1.00 10.00           N\n"
+                  "HETATM    5 ZN    ZN B   3       5.000   9.000   0.000  1.00 10.00          ZN\n"
+                  "END\n");
+    expect_says(run({"info", "a.pdb"}).out,
+                {"chains      2: A B", "ligands     HEM", "ions        ZN"});
+    const auto json = nlohmann::json::parse(run({"info", "--json", "a.pdb"}).out);
+    EXPECT_EQ(json[0]["names"]["chains"], (std::vector<std::string>{"A", "B"}));
+    EXPECT_EQ(json[0]["names"]["ligands"], (std::vector<std::string>{"HEM"}));
+    expect_done(run({"render", "a.pdb", "-o", "a.png", "--select", "chain A or resn HEM"}));
+}
+
 TEST_F(CommandLine, InfoTellsMachinesTheSame) {
     folder_.write("a.xyz", kXyz);
     folder_.write("b.stl", kStl);

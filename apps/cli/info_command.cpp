@@ -24,6 +24,8 @@ struct InfoArguments {
 nlohmann::ordered_json to_json(const FileInfo& info) {
     nlohmann::ordered_json counts = nlohmann::ordered_json::object();
     for (const auto& [what, count] : info.counts) counts[what] = count;
+    nlohmann::ordered_json names = nlohmann::ordered_json::object();
+    for (const auto& [what, all] : info.names) names[what] = all;
     auto fields = nlohmann::ordered_json::array();
     for (const FieldInfo& field : info.fields) {
         fields.push_back({{"name", field.name},
@@ -36,6 +38,7 @@ nlohmann::ordered_json to_json(const FileInfo& info) {
             {"kind", info.kind},
             {"frames", info.frames},
             {"counts", counts},
+            {"names", names},
             {"lower", info.lower},
             {"upper", info.upper},
             {"length_unit", info.length_unit},
@@ -51,13 +54,41 @@ std::string print_bytes(std::uint64_t bytes) {
     return fmt::format("{:.1f} GB", size * 1e-9);
 }
 
+/// As many as a line holds.
+std::string print_names(const std::vector<std::string>& names) {
+    constexpr std::size_t kMost = 60;  // characters
+    std::string text;
+    for (std::size_t k = 0; k < names.size(); ++k) {
+        if (k > 0 && text.size() + names[k].size() > kMost) {
+            return text + fmt::format(" and {} more", names.size() - k);
+        }
+        text += (k > 0 ? " " : "") + (names[k].empty() ? "''" : names[k]);
+    }
+    return text;
+}
+
+/// "4: A B C D", of chains that are counted and named.
+std::string print_count(const FileInfo& info, const std::string& what, std::uint64_t count) {
+    const auto named =
+        std::ranges::find(info.names, what, &decltype(info.names)::value_type::first);
+    const std::string number = std::to_string(count);
+    return named == info.names.end() ? number : number + ": " + print_names(named->second);
+}
+
+bool is_counted(const FileInfo& info, const std::string& what) {
+    return std::ranges::any_of(info.counts, [&](const auto& count) { return count.first == what; });
+}
+
 void print_text(const FileInfo& info) {
     const auto line = [](std::string_view name, const std::string& value) {
         fmt::print("  {:<12}{}\n", name, value);
     };
     fmt::print("{}\n", info.path.string());
     line("format", fmt::format("{} ({})", info.format, info.kind));
-    for (const auto& [what, count] : info.counts) line(what, std::to_string(count));
+    for (const auto& [what, count] : info.counts) line(what, print_count(info, what, count));
+    for (const auto& [what, names] : info.names) {
+        if (!is_counted(info, what)) line(what, print_names(names));
+    }
     if (info.frames > 1) line("frames", std::to_string(info.frames));
     for (std::size_t axis = 0; axis < 3; ++axis) {
         line(axis == 0 ? "bounds" : "",

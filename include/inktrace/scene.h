@@ -34,6 +34,8 @@ struct FileInfo {
     std::string length_unit;  ///< "angstrom"; empty where the format does not say
     int frames = 1;
     std::vector<std::pair<std::string, std::uint64_t>> counts;  ///< ("atoms", 327), ...
+    /// What can be asked for by its name: ("chains", {"A", "B"}), ("ligands", {"HEM"}), ...
+    std::vector<std::pair<std::string, std::vector<std::string>>> names{};
     std::array<double, 3> lower{};  ///< bounds of what is drawn, in the file's units
     std::array<double, 3> upper{};
     std::vector<FieldInfo> fields;          ///< what atoms or particles carry

@@ -123,6 +123,7 @@ FileInfo describe(const std::filesystem::path& file, const ink::FileContents& co
                   .length_unit = contents.length_unit,
                   .frames = contents.frames,
                   .counts = contents.counts,
+                  .names = contents.names,
                   .lower = to_array(bounds.lower),
                   .upper = to_array(bounds.upper),
                   .fields = {},

@@ -280,6 +280,26 @@ void MoleculeBuilder::clip(const DataSettings& settings) {
     molecule_ = filtered(molecule_, keep);
 }
 
+/// What `--select` and `--assembly` can ask for.
+void MoleculeBuilder::describe_names(FileContents& contents) const {
+    const auto add = [&](std::string_view what, std::vector<std::string> names) {
+        if (!names.empty()) contents.names.emplace_back(what, std::move(names));
+    };
+    std::vector<std::string> ligands;
+    std::vector<std::string> ions;
+    for (const Residue& residue : molecule_.residue_table) {
+        if (residue.kind != ResidueKind::other && residue.kind != ResidueKind::ion) continue;
+        auto& kind = residue.kind == ResidueKind::ion ? ions : ligands;
+        if (std::ranges::find(kind, residue.name) == kind.end()) kind.push_back(residue.name);
+    }
+    std::vector<std::string> assemblies;
+    for (const Assembly& assembly : assemblies_) assemblies.push_back(assembly.name);
+    if (!molecule_.residues.empty()) add("chains", molecule_.chains);
+    add("ligands", std::move(ligands));
+    add("ions", std::move(ions));
+    add("assemblies", std::move(assemblies));
+}
+
 void MoleculeBuilder::describe(FileContents& contents) const {
     contents.counts.emplace_back("atoms", molecule_.atom_count());
     if (!molecule_.residues.empty()) {
@@ -289,6 +309,7 @@ void MoleculeBuilder::describe(FileContents& contents) const {
     }
     if (molecule_.has_bond_table) contents.counts.emplace_back("bonds", molecule_.bonds.size());
     if (!assemblies_.empty()) contents.counts.emplace_back("assemblies", assemblies_.size());
+    describe_names(contents);
     if (!molecule_.radii.empty()) {
         contents.fields.push_back(summarize({"radius", 1, molecule_.radii}));
     }

@@ -81,6 +81,7 @@ class MoleculeBuilder {
     void assemble(const DataSettings& settings);
     void clip(const DataSettings& settings);
     void describe(FileContents& contents) const;
+    void describe_names(FileContents& contents) const;
 
     Molecule molecule_;
     std::unordered_map<std::string, std::uint32_t> chain_by_name_;

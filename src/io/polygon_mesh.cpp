@@ -259,7 +259,10 @@ FileContents describe(Object object, PolygonMesh polygons) {
     const Mesh& mesh = std::get<Mesh>(object.shape);
     contents.format = std::move(polygons.format);
     contents.counts = {{"vertices", mesh.vertices.size()}, {"triangles", mesh.triangles.size()}};
-    if (!object.part_names.empty()) contents.counts.emplace_back("parts", object.part_names.size());
+    if (!object.part_names.empty()) {
+        contents.counts.emplace_back("parts", object.part_names.size());
+        contents.names.emplace_back("parts", object.part_names);
+    }
     contents.warnings = std::move(polygons.warnings);
     contents.objects.push_back(std::move(object));
     return contents;

@@ -28,6 +28,8 @@ struct FileContents {
     std::string length_unit;  ///< "angstrom"; empty where the format does not say
     int frames = 1;
     std::vector<std::pair<std::string, std::uint64_t>> counts;  ///< ("atoms", 327), in order
+    /// What can be asked for by its name: ("chains", {"A", "B"}), in the order of the file.
+    std::vector<std::pair<std::string, std::vector<std::string>>> names;
     std::vector<FieldSummary> fields;   ///< what the entries carry; ranges only if asked for
     std::vector<std::string> warnings;  ///< what was left out or guessed, each a whole sentence
 };
