@@ -124,7 +124,7 @@ const std::string kSeeHelp = "See 'inktrace --help' and 'inktrace render --help'
 INSTANTIATE_TEST_SUITE_P(
     Program, BadUsage,
     testing::Values(
-        Mistake{"no_command", {}, {"a command is missing", kSeeHelp}},
+        Mistake{"no_command", {}, {"a file to draw or a command is missing", kSeeHelp}},
         Mistake{"unknown_command",
                 {"rendr", kSample, "-o", "a.png"},
                 {"'rendr'", "did you mean render?", kSeeHelp}},

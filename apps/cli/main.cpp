@@ -63,10 +63,12 @@ int report_usage(std::string_view problem) {
     return inktrace::kBadUsage;
 }
 
-/// What was typed; `inktrace FILE...` is short for `inktrace render FILE...`.
+/// What was typed; `inktrace FILE...` is short for `inktrace render FILE...`, and `help` means
+/// `--help`.
 std::vector<std::string> arguments(const CLI::App& app, int argc, char** argv) {
     std::vector<std::string> words(argv + 1, argv + argc);
     if (words.empty()) return words;
+    if (words.front() == "help") words.front() = "--help";
     const std::string& first = words.front();
     std::error_code failure;
     const bool is_command =
@@ -93,7 +95,8 @@ int run(int argc, char** argv) {
         std::vector<std::string> words = arguments(app, argc, argv);
         std::ranges::reverse(words);  // as CLI11 takes them
         app.parse(std::move(words));
-        if (app.get_subcommands().empty()) return report_usage("a command is missing");
+        if (app.get_subcommands().empty())
+            return report_usage("a file to draw or a command is missing");
     } catch (const CLI::ExtrasError&) {
         return report_usage(unknown_argument(app));
     } catch (const CLI::ParseError& error) {

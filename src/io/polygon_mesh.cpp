@@ -219,7 +219,7 @@ void warn_about_branches(const Mesh& mesh, const MeshTopology& topology, Polygon
     std::ranges::sort(edges);
     edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
     polygons.warnings.push_back(
-        fmt::format("{} {} more than two faces; lines run along them as along creases.",
+        fmt::format("{} {} more than two faces; a line runs along each as along a crease.",
                     edges.size(), edges.size() == 1 ? "edge has" : "edges have"));
 }
 
