@@ -394,31 +394,58 @@ TEST(Aovs, TellDepthNormalAndPositionInWorldUnits) {
 
 // Camera
 
-TEST(AutomaticFraming, FillsThePictureUpToItsMargin) {
-    const Scene scene({sphere_object({{{3, 1, 2}, 0.5F}, {{5, 1, 1}, 1.0F}, {{4, 4, 2}, 0.25F}})});
+/// The columns and rows from the first to the last that show anything of three balls.
+struct Extent {
+    int left, right = 0, top, bottom = 0;
+
+    Extent(Size size, Settings settings, bool orthographic) : left(size.width), top(size.height) {
+        const Scene scene(
+            {sphere_object({{{3, 1, 2}, 0.5F}, {{5, 1, 1}, 1.0F}, {{4, 4, 2}, 0.25F}})});
+        settings.size = size;
+        settings.view.margin = 0.1;
+        if (orthographic) settings.view.orthographic = 0.0;
+        settings.shading.transparent_background = true;
+        settings.compose = Compose::shaded;
+        const Film film = draw(scene, settings);
+        for (int y = 0; y < size.height; ++y) {
+            for (int x = 0; x < size.width; ++x) {
+                if (film.display().pixels[static_cast<std::size_t>(y * size.width + x)] == 0)
+                    continue;
+                left = std::min(left, x);
+                right = std::max(right, x);
+                top = std::min(top, y);
+                bottom = std::max(bottom, y);
+            }
+        }
+    }
+};
+
+TEST(AutomaticFraming, FillsWhatALegendLeavesOfThePicture) {
     for (const bool orthographic : {false, true}) {
         for (const Size size : {Size{120, 60}, Size{60, 120}}) {
-            Settings settings;
-            settings.size = size;
-            settings.view.margin = 0.1;
-            if (orthographic) settings.view.orthographic = 0.0;
-            settings.shading.transparent_background = true;
-            settings.compose = Compose::shaded;
-            const Film film = draw(scene, settings);
-            int left = size.width;
-            int right = 0;
-            int top = size.height;
-            int bottom = 0;
-            for (int y = 0; y < size.height; ++y) {
-                for (int x = 0; x < size.width; ++x) {
-                    if (film.display().pixels[static_cast<std::size_t>(y * size.width + x)] == 0)
-                        continue;
-                    left = std::min(left, x);
-                    right = std::max(right, x);
-                    top = std::min(top, y);
-                    bottom = std::max(bottom, y);
-                }
+            for (const bool is_left : {false, true}) {
+                Settings settings;
+                (is_left ? settings.view.left_taken : settings.view.right_taken) = 0.2;
+                const auto [left, right, top, bottom] = Extent(size, settings, orthographic);
+                const int first = size.width * (is_left ? 3 : 1) / 10;
+                const int last = size.width * (is_left ? 9 : 7) / 10;
+                EXPECT_GE(left, first - 1);
+                EXPECT_LE(right, last + 1);
+                EXPECT_NEAR(left + right, first + last - 1, 2);  // centred in what is left
+                EXPECT_NEAR(top + bottom, size.height - 1, 2);
+                const bool touches_sides = left <= first + 1 && right >= last - 2;
+                const bool touches_ends =
+                    top <= size.height / 10 + 1 && bottom >= size.height * 9 / 10 - 2;
+                EXPECT_TRUE(touches_sides || touches_ends);
             }
+        }
+    }
+}
+
+TEST(AutomaticFraming, FillsThePictureUpToItsMargin) {
+    for (const bool orthographic : {false, true}) {
+        for (const Size size : {Size{120, 60}, Size{60, 120}}) {
+            const auto [left, right, top, bottom] = Extent(size, Settings{}, orthographic);
             EXPECT_GE(left, size.width / 10 - 1);
             EXPECT_GE(top, size.height / 10 - 1);
             EXPECT_LE(right, size.width * 9 / 10 + 1);

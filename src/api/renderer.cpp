@@ -99,8 +99,10 @@ Settings with_view(const Settings& settings, const ink::ViewSettings& view) {
 Settings Renderer::with_camera(const Settings& settings) const {
     return ink::guard([&] {
         const ink::Settings& inner = settings.impl().settings;
-        const ink::Camera camera(impl_->scene, inner.view, inner.size);
-        return with_view(settings, ink::explicit_view(camera, impl_->scene, inner.view));
+        const ink::ViewSettings view =
+            ink::beside(ink::make_legend(impl_->scene, inner), inner.view, inner.size);
+        const ink::Camera camera(impl_->scene, view, inner.size);
+        return with_view(settings, ink::explicit_view(camera, impl_->scene, view));
     });
 }
 
@@ -114,7 +116,9 @@ Settings Renderer::with_turned_camera(const Settings& settings, double turn_deg)
 
 std::optional<Hit> Renderer::pick(const Settings& settings, double x, double y) const {
     return ink::guard([&]() -> std::optional<Hit> {
-        const auto found = ink::pick(impl_->scene, *impl_->tracer, settings.impl().settings,
+        ink::Settings inner = settings.impl().settings;
+        inner.view = ink::beside(ink::make_legend(impl_->scene, inner), inner.view, inner.size);
+        const auto found = ink::pick(impl_->scene, *impl_->tracer, inner,
                                      {static_cast<float>(x), static_cast<float>(y)});
         if (!found) return std::nullopt;
         const auto array = [](ink::Vec3d v) { return std::array{v.x, v.y, v.z}; };
@@ -131,7 +135,9 @@ std::optional<Hit> Renderer::pick(const Settings& settings, double x, double y) 
 Picture Renderer::render(const Settings& settings, const RenderOptions& options) const {
     validate(settings, options);
     return ink::guard([&] {
-        const ink::Settings& inner = settings.impl().settings;
+        ink::Settings inner = settings.impl().settings;
+        ink::Legend legend = ink::make_legend(impl_->scene, inner);
+        inner.view = ink::beside(legend, inner.view, inner.size);
         ink::RenderStats stats;
         std::function<void(double)> progress;
         if (options.progress) {
@@ -162,7 +168,6 @@ Picture Renderer::render(const Settings& settings, const RenderOptions& options)
                                         .rays = stats.rays,
                                         .crossings = stats.crossings,
                                         .threads = stats.threads}};
-        ink::Legend legend = ink::make_legend(impl_->scene, inner);
         if (options.inked) ink::lay_over(legend, picture.film);
         if (options.curves) {
             const ink::Timer timer(picture.stats.curves_ms);

@@ -64,6 +64,13 @@ Vec3d upright(Vec3d back, Vec3d up) {
     return normalize(cross(back, normalize(side)));
 }
 
+/// Share of the half of the picture on one side that the scene may fill: what is not taken there,
+/// less the margin.
+double fit_beside(double taken, double margin) {
+    constexpr double kLeast = 0.05;
+    return std::max(1.0 - 2.0 * (taken + margin), kLeast);
+}
+
 }  // namespace
 
 Camera::Camera(const Scene& scene, const ViewSettings& settings, Size size)
@@ -108,26 +115,35 @@ void Camera::place(const Scene& scene, const ViewSettings& settings, Size size) 
     // The four planes through the eye that bound the picture less its margin must have the whole
     // scene on their inner side; `reach` says how near each can come. In orthographic projection
     // the planes are parallel in pairs.
-    const double slope_x = orthographic_ ? 0.0 : tan_y * aspect * fit;
-    const double slope_y = orthographic_ ? 0.0 : tan_y * fit;
-    const double norm_x = std::hypot(1.0, slope_x);
+    const double fit_left = fit_beside(settings.left_taken, settings.margin);
+    const double fit_right = fit_beside(settings.right_taken, settings.margin);
+    const double slope = orthographic_ ? 0.0 : tan_y;
+    const double slope_left = slope * aspect * fit_left;
+    const double slope_right = slope * aspect * fit_right;
+    const double slope_y = slope * fit;
+    const double norm_left = std::hypot(1.0, slope_left);
+    const double norm_right = std::hypot(1.0, slope_right);
     const double norm_y = std::hypot(1.0, slope_y);
-    const std::array<Vec3f, 4> normals{to_float((right_ - back_ * slope_x) / norm_x),
-                                       to_float((-right_ - back_ * slope_x) / norm_x),
+    const std::array<Vec3f, 4> normals{to_float((right_ - back_ * slope_left) / norm_left),
+                                       to_float((-right_ - back_ * slope_right) / norm_right),
                                        to_float((up_ - back_ * slope_y) / norm_y),
                                        to_float((-up_ - back_ * slope_y) / norm_y)};
     const std::array<double, 4> reach = supports(scene, normals);
-    const double x = (reach[0] - reach[1]) * norm_x * 0.5;
+    const double left = reach[0] * norm_left;
+    const double right = reach[1] * norm_right;
+    double x = (left - right) * 0.5;
     const double y = (reach[2] - reach[3]) * norm_y * 0.5;
     double z = 0.0;
     if (orthographic_) {
-        const double half_width = -(reach[0] + reach[1]) * 0.5;
-        const double needed = std::max(-(reach[2] + reach[3]) * 0.5, half_width / aspect) / fit;
+        const double needed = std::max(-(reach[2] + reach[3]) * 0.5 / fit,
+                                       -(left + right) / (fit_left + fit_right) / aspect);
         if (!(half_height_ > 0.0)) half_height_ = needed > 0.0 ? needed : 1.0;
+        x += (fit_left - fit_right) * 0.5 * half_height_ * aspect;
         z = 2.0;
     } else {
-        z = std::max(-(reach[0] + reach[1]) * norm_x / (2.0 * slope_x),
+        z = std::max(-(left + right) / (slope_left + slope_right),
                      -(reach[2] + reach[3]) * norm_y / (2.0 * slope_y));
+        x += (slope_left - slope_right) * 0.5 * z;
     }
     eye_ = right_ * x + up_ * y + back_ * z;
     if (settings.look_at) {

@@ -28,6 +28,9 @@ struct ViewSettings {
     /// Orthographic projection: height of the view in world units; 0: fitted to the scene.
     std::optional<double> orthographic;
     double margin = 0.04;  ///< of the picture's height and width left free on each side, [0, 0.45]
+    /// Of the picture's width taken by a legend on either side, which the scene stays clear of where
+    /// it is framed automatically; [0, 0.4].
+    double left_taken = 0.0, right_taken = 0.0;
 };
 
 /// Turns screen points into rays. Rays start on a plane just before the scene, not at the eye: the

@@ -308,20 +308,30 @@ struct LegendImage {
     std::vector<std::uint32_t> pixels;
 };
 
-LegendImage image_of(const Legend& legend, Size size) {
+/// What a legend covers, without the rims of its words.
+struct LegendBox {
     Vec2f lower{kInfinity, kInfinity};
     Vec2f upper{-kInfinity, -kInfinity};
-    const auto add = [&](Vec2f p) {
-        lower = {std::min(lower.x, p.x), std::min(lower.y, p.y)};
-        upper = {std::max(upper.x, p.x), std::max(upper.y, p.y)};
-    };
-    for (const LegendShape& shape : legend.shapes) {
-        for (const Curve& curve : shape.outlines) {
-            for (const CurvePiece& piece : curve.pieces) {
-                for (const Vec2f p : {piece.control1, piece.control2, piece.end}) add(p);
+
+    explicit LegendBox(const Legend& legend) {
+        for (const LegendShape& shape : legend.shapes) {
+            for (const Curve& curve : shape.outlines) {
+                for (const CurvePiece& piece : curve.pieces) {
+                    for (const Vec2f p : {piece.control1, piece.control2, piece.end}) add(p);
+                }
             }
         }
     }
+
+  private:
+    void add(Vec2f p) {
+        lower = {std::min(lower.x, p.x), std::min(lower.y, p.y)};
+        upper = {std::max(upper.x, p.x), std::max(upper.y, p.y)};
+    }
+};
+
+LegendImage image_of(const Legend& legend, Size size) {
+    const auto [lower, upper] = LegendBox(legend);
     const auto rim = static_cast<float>(legend.rim_px) + 1.0F;
     const auto within = [](float v, int most) {
         return std::clamp(static_cast<int>(std::floor(v)), 0, most);
@@ -387,6 +397,18 @@ Legend make_legend(const Scene& scene, const Settings& settings) {
     Legend legend;
     if (!scales.empty()) LegendMaker(settings, legend).run(scales);
     return legend;
+}
+
+ViewSettings beside(const Legend& legend, ViewSettings view, Size size) {
+    if (legend.empty()) return view;
+    constexpr double kMost = 0.4;  // beyond which the scene would be the smaller part
+    const LegendBox box(legend);
+    const double width = size.width;
+    const bool is_left = static_cast<double>(box.lower.x + box.upper.x) < width;
+    const double taken =
+        is_left ? static_cast<double>(box.upper.x) : width - static_cast<double>(box.lower.x);
+    (is_left ? view.left_taken : view.right_taken) = std::min(taken / width, kMost);
+    return view;
 }
 
 void draw(const Legend& legend, cairo_t* cr) {

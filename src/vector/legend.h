@@ -33,6 +33,9 @@ struct Legend {
 /// Sans, or what the system has in its place.
 Legend make_legend(const Scene& scene, const Settings& settings);
 
+/// The view, with the scene beside the legend, where the camera is free to choose its place.
+ViewSettings beside(const Legend& legend, ViewSettings view, Size size);
+
 void draw(const Legend& legend, cairo_t* cr);
 void lay_over(const Legend& legend, Film& film);
 
