@@ -101,7 +101,7 @@ struct Settings {
     std::optional<Metric> metric;  ///< default: solid for method "edges", linear for "stencil"
     int rings = 1;
     Length ridge_scale{0.8, Length::Unit::percent};  ///< radius that ridges are looked for in
-    double ridge_turn_deg = 3.0;   ///< that a normal turns in 1 % of the height, least
+    double ridge_turn_deg = 8.0;   ///< that a normal turns in 1 % of the height, least
     StencilThresholds thresholds;  ///< of method "stencil"
 
     double line_fade = 0.0;   ///< share of their ink that the farthest lines lose, [0, 1]
