@@ -181,8 +181,8 @@ HWY_INLINE hn::Vec<Tag> load_rows(Tag tag, const float* first, int stride) {
     }
 }
 
-/// Upper left corners of the cells of a window, and which of them bounds reach into, before all
-/// that they see.
+/// Where the points of the cells of a window begin, and which of them bounds reach, before all that
+/// they see.
 struct ReachedCells {
     Vector left, top;
     Mask reached;
@@ -193,11 +193,11 @@ struct ReachedCells {
                        load(raster.window.right, i));
         top = hn::Add(set(raster.top + static_cast<float>(row) * raster.side),
                       load(raster.window.down, i));
-        const auto side = set(raster.side);
+        const auto extent = set(raster.extent);
         const auto across =
-            hn::And(hn::Le(set(reach.left), hn::Add(left, side)), hn::Ge(set(reach.right), left));
+            hn::And(hn::Le(set(reach.left), hn::Add(left, extent)), hn::Ge(set(reach.right), left));
         const auto down =
-            hn::And(hn::Le(set(reach.top), hn::Add(top, side)), hn::Ge(set(reach.bottom), top));
+            hn::And(hn::Le(set(reach.top), hn::Add(top, extent)), hn::Ge(set(reach.bottom), top));
         const int first = (row + i / kBlockSide) * raster.stride() + column;
         const auto farthest = load_rows(kFloats, raster.farthest + first, raster.stride());
         reached = hn::And(hn::And(across, down), hn::Lt(set(reach.depth), farthest));
@@ -224,7 +224,7 @@ struct Pairs {
         for (int i = 0; i < kLanes; i += kStep) {
             const ReachedCells reached(reach, raster, column, row, i);
             const Mask live =
-                test.may_cover(reached.reached, reached.left, reached.top, reach, raster.side);
+                test.may_cover(reached.reached, reached.left, reached.top, reach, raster.extent);
             const auto at = hn::Add(load(raster.window.offset, i), hn::Set(kIndices, first));
             const auto all =
                 hn::Add(hn::ShiftLeft<4>(at), hn::Set(kIndices, static_cast<std::uint32_t>(lane)));

@@ -31,7 +31,9 @@ void start_cells(const Projection& projection, const BlockRaster& raster, bool f
 struct FrontRaster {
     static constexpr int kBeyond = kBlockSide - 1;
 
-    float left, top, side;          ///< of the first cell, q
+    float left, top;                ///< of the first cell's points, q
+    float side;                     ///< from one cell to the next
+    float extent;                   ///< of a cell's points, along its side
     int across, down;               ///< cells
     const std::uint32_t* front_at;  ///< a cell: its front
     float* farthest;  ///< a cell: its farthest depth; minus infinity where there is no front

@@ -79,7 +79,7 @@ struct SphereTest {
     float origin_step, slope_step;
 
     HWY_INLINE Mask may_cover(Mask cells, Vector /*left*/, Vector /*top*/, const Reach& /*reach*/,
-                              float /*side*/) const {
+                              float /*extent*/) const {
         return cells;
     }
 
@@ -136,18 +136,19 @@ constexpr float kRounding = 1e-6F;
 struct TriangleTest {
     TriangleForm form;
 
-    /// Those of the cells that are not beyond an edge, by their corner that lies farthest inside.
+    /// Those of the cells that are not beyond an edge, by that corner of their points which lies
+    /// farthest inside.
     HWY_INLINE Mask may_cover(Mask cells, Vector left, Vector top, const Reach& reach,
-                              float side) const {
+                              float extent) const {
         // No edge is longer than the bounds, and no cell that is reached begins farther from an
         // end of one.
         const float width = reach.right - reach.left;
         const float height = reach.bottom - reach.top;
-        const float slack = kRounding * (width * (height + side) + height * (width + side));
+        const float slack = kRounding * (width * (height + extent) + height * (width + extent));
         for (const TriangleForm::Edge& edge : form.edges) {
             const auto along = hn::Mul(set(edge.dx), hn::Sub(top, set(edge.y)));
             const auto across = hn::Mul(set(edge.dy), hn::Sub(left, set(edge.x)));
-            const float most = (std::max(edge.dx, 0.0F) - std::min(edge.dy, 0.0F)) * side;
+            const float most = (std::max(edge.dx, 0.0F) - std::min(edge.dy, 0.0F)) * extent;
             cells = hn::And(cells, hn::Ge(hn::Sub(along, across), set(-(most + slack))));
         }
         return cells;
@@ -274,7 +275,7 @@ struct GlyphTest {
     bool capped;
 
     HWY_INLINE Mask may_cover(Mask cells, Vector /*left*/, Vector /*top*/, const Reach& /*reach*/,
-                              float /*side*/) const {
+                              float /*extent*/) const {
         return cells;
     }
 

@@ -175,9 +175,12 @@ void ScreenTileTracer::start(const BlockRaster& raster, std::span<const PointPac
 
 FrontRaster ScreenTileTracer::lay_out(const BlockRaster& raster) {
     const Vec2f centre = view_.projection.centre;
-    FrontRaster fronts{raster.left() - centre.x,
-                       raster.top() - centre.y,
+    // Its points keep half a spacing off the edges of a cell; less, for rounding.
+    const float inset = 0.45F * raster.spacing;
+    FrontRaster fronts{raster.left() + inset - centre.x,
+                       raster.top() + inset - centre.y,
                        raster.side(),
+                       raster.side() - 2.0F * inset,
                        raster.across(),
                        raster.down(),
                        nullptr,
