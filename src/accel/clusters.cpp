@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <span>
 #include <utility>
 #include <variant>
 
@@ -158,17 +159,72 @@ void add_level(std::size_t count, const BoundsOf& bounds, std::vector<Clusters::
     levels.push_back(std::move(level));
 }
 
+/// A primitive's place and number.
+struct Placed {
+    Vec3f centre;
+    std::uint32_t number;
+};
+
+/// Brings primitives that are close together next to each other: halves them across the longest
+/// side of their bounds, again and again, down to a cluster's.
+void gather_neighbours(std::span<Placed> placed) {
+    if (placed.size() <= kLanes) return;
+    Bounds3f bounds;
+    for (const Placed& one : placed) bounds.add(one.centre);
+    const Vec3f size = bounds.upper - bounds.lower;
+    const auto axis = size.x >= size.y && size.x >= size.z ? &Vec3f::x
+                      : size.y >= size.z                   ? &Vec3f::y
+                                                           : &Vec3f::z;
+    const auto before = [axis](const Placed& a, const Placed& b) {
+        const float at_a = a.centre.*axis;
+        const float at_b = b.centre.*axis;
+        return at_a < at_b || (at_a == at_b && a.number < b.number);
+    };
+    const std::size_t half = (packets_for(placed.size()) + 1) / 2 * kLanes;
+    std::ranges::nth_element(placed, placed.begin() + static_cast<std::ptrdiff_t>(half), before);
+    gather_neighbours(placed.first(half));
+    gather_neighbours(placed.subspan(half));
+}
+
+using Keys = std::vector<std::pair<std::uint64_t, std::uint32_t>>;
+
+/// Triangles by their keys, those of the same cluster close together: a curve that fills space
+/// leaves a surface and comes back elsewhere, and puts into one cluster what it meets before and
+/// after. So runs of it are divided anew. All triangles at once would take three times as long. Of
+/// many millions, places come from memory, which takes as long as all else, and clusters are small
+/// on the screen anyway.
+template <class Parts>
+void regroup(const Parts& parts, Keys& keys) {
+    constexpr std::size_t kRun = 4096;
+    constexpr std::size_t kMany = std::size_t{1} << 21U;
+    if (keys.size() > kMany) return;
+    const std::size_t runs = (keys.size() + kRun - 1) / kRun;
+    parallel_ranges(runs, kGrain / kRun, [&](std::size_t begin, std::size_t end) {
+        std::vector<Placed> placed;
+        for (std::size_t run = begin; run < end; ++run) {
+            const auto own =
+                std::span(keys).subspan(run * kRun).first(std::min(kRun, keys.size() - run * kRun));
+            placed.clear();
+            for (const auto& [key, part] : own)
+                placed.push_back({parts.bounds(part).centre(), part});
+            gather_neighbours(placed);
+            for (std::size_t k = 0; k < own.size(); ++k) own[k].second = placed[k].number;
+        }
+    });
+}
+
 template <class Parts, class PartLanes>
 void append(const Parts& parts, std::uint32_t object, std::vector<PartLanes>& packets,
             Clusters& all, std::vector<Bounds3f>& boxes) {
     const std::size_t count = parts.count();
-    std::vector<std::pair<std::uint64_t, std::uint32_t>> keys(count);
+    Keys keys(count);
     parallel_ranges(count, kGrain, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             keys[i] = {morton_code(parts.bounds(i).centre()), static_cast<std::uint32_t>(i)};
         }
     });
     parallel_sort(keys);
+    if constexpr (Parts::kKind == ClusterKind::triangles) regroup(parts, keys);
 
     const std::size_t first = all.order.size();
     const std::size_t first_cluster = all.clusters.size();

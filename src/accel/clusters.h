@@ -65,9 +65,9 @@ struct BoxLanes {
 /// Whether camera rays can be traced by what the screen shows of a shape.
 bool has_screen_form(const Shape& shape);
 
-/// The primitives of the scene's shapes with screen forms in clusters along a Morton curve, object
-/// by object, so that clusters that follow each other are near each other too, and a tree of boxes
-/// above them. Copies have clusters and boxes of their own, and share all else.
+/// The primitives of the scene's shapes with screen forms in clusters of neighbours along a Morton
+/// curve, object by object, so that clusters that follow each other are near each other too, and a
+/// tree of boxes above them. Copies have clusters and boxes of their own, and share all else.
 struct Clusters {
     std::vector<Cluster> clusters;
     std::vector<std::uint32_t> order;  ///< primitives, cluster by cluster
