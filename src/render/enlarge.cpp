@@ -1,8 +1,9 @@
 #include "render/enlarge.h"
 
 #include <algorithm>
-#include <array>
+#include <bit>
 #include <cmath>
+#include <utility>
 
 #include "render/enlarge_rows.h"
 #include "render/face_tiling.h"
@@ -20,56 +21,9 @@ float place(int at, int large, int small, float factor) {
 
 constexpr std::uint32_t kOne = 256;
 
-/// Which side of a segment's line a point lies on.
-float side_of(const Segment& segment, Vec2f point) {
-    const Vec2f d = segment.b - segment.a;
-    const Vec2f v = point - segment.a;
-    return d.x * v.y - d.y * v.x;
-}
-
 /// Whether colours change across a line, from one side of its cell to another.
 bool divides(const Segment& line) {
     return line.spans_cell && line.type != LineType::mesh && line.type != LineType::ridge;
-}
-
-/// A line that colours change across, and on which sides of it the corners of its cell lie.
-class DividedCorners {
-  public:
-    DividedCorners(const Segment& line, const std::array<Vec2f, 4>& corners) : line_(&line) {
-        for (std::size_t k = 0; k < 4; ++k) sides_[k] = side_of(line, corners[k]);
-    }
-    /// Those beyond the line from a point have no weight.
-    void drop(Vec2f point, std::array<float, 4>& weights) const {
-        const float side = side_of(*line_, point);
-        for (std::size_t k = 0; k < 4; ++k) {
-            if (side * sides_[k] < 0.0F) weights[k] = 0.0F;
-        }
-    }
-
-  private:
-    const Segment* line_;
-    std::array<float, 4> sides_{};
-};
-
-/// A pixel of which some corners of its cell count, by their weights.
-std::uint32_t mixed(const std::array<std::uint32_t, 4>& corners,
-                    const std::array<float, 4>& weights) {
-    std::array<float, 4> sum{};
-    float all = 0.0F;
-    for (std::size_t k = 0; k < 4; ++k) {
-        const auto alpha = static_cast<float>(corners[k] >> 24U);
-        const float weight = weights[k] * alpha;
-        for (unsigned c = 0; c < 3; ++c) {
-            sum[c] += weight * static_cast<float>((corners[k] >> (8U * c)) & 0xFFU);
-        }
-        sum[3] += weight;
-        all += weights[k];
-    }
-    std::uint32_t pixel = static_cast<std::uint32_t>(sum[3] / all + 0.5F) << 24U;
-    for (unsigned c = 0; c < 3 && sum[3] > 0.0F; ++c) {
-        pixel |= static_cast<std::uint32_t>(sum[c] / sum[3] + 0.5F) << (8U * c);
-    }
-    return pixel;
 }
 
 }  // namespace
@@ -139,51 +93,64 @@ void PixelEnlarger::sharpen(const Tile& tile, std::span<const Segment> lines, Fi
 
 void PixelEnlarger::sharpen_cell(int column, int row, std::span<const Segment> lines, Film& film,
                                  FaceTiling* faces) const {
-    thread_local std::vector<DividedCorners> dividing;
+    thread_local std::vector<DividingLine> dividing;
     dividing.clear();
-    const Size size = pixels_.size;
-    std::array<std::uint32_t, 4> corners;
-    std::array<Vec2f, 4> places;
-    for (std::size_t k = 0; k < 4; ++k) {
-        const int i = column + static_cast<int>(k % 2);
-        const int j = row + static_cast<int>(k / 2);
-        places[k] = {static_cast<float>(i) + 0.5F, static_cast<float>(j) + 0.5F};
-        corners[k] = pixels_.pixels[static_cast<std::size_t>(std::clamp(j, 0, size.height - 1)) *
-                                        static_cast<std::size_t>(size.width) +
-                                    static_cast<std::size_t>(std::clamp(i, 0, size.width - 1))];
-    }
+    const CellCorners corners = corners_of(column, row);
     for (const Segment& line : lines) {
-        if (divides(line)) dividing.emplace_back(line, places);
+        if (divides(line)) dividing.emplace_back(line, corners);
     }
     if (dividing.empty()) return;
     // Pixels whose centres lie in the cell.
-    const Vec2f lower = enlargement_.enlarged(places[0]);
-    const Vec2f upper = enlargement_.enlarged(places[3]);
+    const Vec2f lower = enlargement_.enlarged(corners.places[0]);
+    const Vec2f upper = enlargement_.enlarged(corners.places[3]);
     const auto first_of = [](float at) { return static_cast<int>(std::ceil(at - 0.5F)); };
     const Size large = enlargement_.large();
-    for (int y = std::max(first_of(lower.y), 0); y < std::min(first_of(upper.y), large.height);
-         ++y) {
-        for (int x = std::max(first_of(lower.x), 0); x < std::min(first_of(upper.x), large.width);
-             ++x) {
-            const Vec2f point =
-                enlargement_.shrunk({static_cast<float>(x) + 0.5F, static_cast<float>(y) + 0.5F});
-            const float right = point.x - places[0].x;
-            const float below = point.y - places[0].y;
-            std::array<float, 4> weights{(1 - right) * (1 - below), right * (1 - below),
-                                         (1 - right) * below, right * below};
-            const auto heaviest = [&] {
-                return static_cast<int>(std::ranges::max_element(weights) - weights.begin());
-            };
-            const int nearest = heaviest();
-            for (const DividedCorners& line : dividing) line.drop(point, weights);
-            constexpr float kLeast = 1e-3F;
-            if (weights[0] + weights[1] + weights[2] + weights[3] < kLeast) continue;
-            film.display_row(y)[static_cast<std::size_t>(x)] = mixed(corners, weights);
-            if (faces == nullptr) continue;
-            const int seen = heaviest();
-            if (seen != nearest) faces->look_at(x, y, column + seen % 2, row + seen / 2);
+    const Tile cell{std::max(first_of(lower.x), 0), std::max(first_of(lower.y), 0),
+                    std::min(first_of(upper.x), large.width),
+                    std::min(first_of(upper.y), large.height)};
+    MixedPixels mixed;
+    for (int y = cell.y0; y < cell.y1; y += kBlockSide) {
+        for (int x = cell.x0; x < cell.x1; x += kBlockSide) {
+            const auto [at_x, at_y] = shrunk_block(x, y);
+            mix_corners(corners, dividing, at_x, at_y, mixed);
+            for (; mixed.known != 0; mixed.known &= mixed.known - 1) {
+                const int i = std::countr_zero(mixed.known);
+                const int px = x + i % kBlockSide;
+                const int py = y + i / kBlockSide;
+                if (px >= cell.x1 || py >= cell.y1) continue;
+                film.display_row(py)[static_cast<std::size_t>(px)] = mixed.pixels[i];
+                if (faces == nullptr || mixed.seen[i] == mixed.nearest[i]) continue;
+                faces->look_at(px, py, column + mixed.seen[i] % 2, row + mixed.seen[i] / 2);
+            }
         }
     }
+}
+
+CellCorners PixelEnlarger::corners_of(int column, int row) const {
+    CellCorners corners;
+    const Size size = pixels_.size;
+    for (std::size_t k = 0; k < 4; ++k) {
+        const int i = column + static_cast<int>(k % 2);
+        const int j = row + static_cast<int>(k / 2);
+        corners.places[k] = {static_cast<float>(i) + 0.5F, static_cast<float>(j) + 0.5F};
+        corners.pixels[k] =
+            pixels_.pixels[static_cast<std::size_t>(std::clamp(j, 0, size.height - 1)) *
+                               static_cast<std::size_t>(size.width) +
+                           static_cast<std::size_t>(std::clamp(i, 0, size.width - 1))];
+    }
+    return corners;
+}
+
+/// Where the centres of 4 x 4 pixels of the large picture lie in the small one.
+std::pair<Lanes<float>, Lanes<float>> PixelEnlarger::shrunk_block(int x, int y) const {
+    std::pair<Lanes<float>, Lanes<float>> places;
+    for (int i = 0; i < kLanes; ++i) {
+        const Vec2f point = enlargement_.shrunk({static_cast<float>(x + i % kBlockSide) + 0.5F,
+                                                 static_cast<float>(y + i / kBlockSide) + 0.5F});
+        places.first[i] = point.x;
+        places.second[i] = point.y;
+    }
+    return places;
 }
 
 }  // namespace ink

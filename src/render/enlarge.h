@@ -2,12 +2,15 @@
 
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "base/image.h"
+#include "base/lanes.h"
 #include "base/vec.h"
 #include "film/film.h"
 #include "render/edges.h"
+#include "render/mix_corners.h"
 #include "render/tiles.h"
 
 namespace ink {
@@ -65,6 +68,8 @@ class PixelEnlarger {
         std::vector<std::uint32_t> share;  ///< of the second, in 1 / 256
         std::vector<std::uint32_t> twice;  ///< the same in both halves of each number
     };
+    CellCorners corners_of(int column, int row) const;
+    std::pair<Lanes<float>, Lanes<float>> shrunk_block(int x, int y) const;
     void sharpen_cell(int column, int row, std::span<const Segment> lines, Film& film,
                       FaceTiling* faces) const;
 
