@@ -239,6 +239,31 @@ TEST(Draft, DrawsNoLinesBetweenFacesBesideTheMesh) {
     EXPECT_LT(beside, 20);
 }
 
+TEST(Draft, DrawsLinesBetweenFacesUpToAnOutlineThatLiesJustBelowAPointOfItsLattice) {
+    const TemporaryFolder folder;
+    const Renderer renderer = draft_scene(folder.write("flat.off", fine_mesh(60, 0.0)));
+    Settings settings;
+    settings.set("size", "160x160").set("compose", "lines").set("line-width", "1px");
+    settings.set("lines", "silhouette,boundary,mesh");
+    // The upper edge lies at 14.2 pixels; the last points above it see nothing, nor does any other
+    // of their blocks of 4 x 4.
+    settings.set("eye", "30,42.55,100").set("look-at", "30,42.55,0").set("up", "0,1,0");
+    settings.set("orthographic", "40");
+    RenderOptions options;
+    options.draft = 0.25;
+    const Picture draft = renderer.render(settings, options);
+    const auto ink_of_row = [&](int y) {
+        double sum = 0.0;
+        for (int x = 0; x < 160; ++x) {
+            sum += 255 - draft.rgba()[static_cast<std::size_t>(4 * (y * 160 + x))];
+        }
+        return sum;
+    };
+    double usual = 0.0;
+    for (int y = 20; y < 60; ++y) usual += ink_of_row(y) / 40.0;
+    EXPECT_GT(ink_of_row(15), 0.4 * usual);
+}
+
 TEST(Draft, LetsNoColorRunAcrossALine) {
     // Two hemispheres of clear colours before white: with a line too thin to hide any bleeding.
     const TemporaryFolder folder;

@@ -1,7 +1,9 @@
 #include "accel/screen_borders.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
+#include <cstddef>
 
 // Everything between the two namespace macros is built once for each instruction set.
 #undef HWY_TARGET_INCLUDE
@@ -61,12 +63,15 @@ void find_front_sides(const Front& front, const ScreenPacket* packets, SidesPack
         const auto qx = hn::Set(kFour, front.x[i]);
         const auto qy = hn::Set(kFour, front.y[i]);
         const auto areas = hn::Sub(hn::Mul(dx, hn::Sub(qy, y)), hn::Mul(dy, hn::Sub(qx, x)));
-        hn::StoreU(areas, kFour, sides.inside.data());
-        const float area = sides.inside[0] + sides.inside[1] + sides.inside[2];
+        std::array<float, 4> of_sides;
+        hn::StoreU(areas, kFour, of_sides.data());
+        const float area = of_sides[0] + of_sides[1] + of_sides[2];
         const auto scale = hn::Set(kFour, 1.0F / std::max(area, 1e-20F));
-        hn::StoreU(hn::Mul(areas, scale), kFour, sides.inside.data());
-        hn::StoreU(hn::Neg(hn::Mul(dy, scale)), kFour, sides.dx.data());
-        hn::StoreU(hn::Mul(dx, scale), kFour, sides.dy.data());
+        const auto inside = hn::Mul(areas, scale);
+        const auto step_x = hn::Neg(hn::Mul(dy, scale));
+        static_assert(offsetof(TriangleSides, dx) == sizeof(sides.inside));
+        hn::StoreU(hn::ConcatLowerLower(kFour, step_x, inside), kFour, sides.inside.data());
+        hn::Store(hn::LowerHalf(hn::Mul(dx, scale)), hn::Half<Four>(), sides.dy.data());
     }
 }
 

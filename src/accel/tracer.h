@@ -72,15 +72,16 @@ struct BorderPacket {
     Lanes<float> nx, ny;    ///< unit, across that side
 };
 
-/// The sides of a triangle from a point of the screen. The fourth of each is nothing.
+/// Two sides of a triangle from a point of the screen. Those of the third follow: what is inside
+/// adds up to one, and steps to nothing.
 struct TriangleSides {
     /// How far inside the point is, in shares of the triangle's height over that side: on the
     /// screen a barycentric coordinate.
-    std::array<float, 4> inside;
-    std::array<float, 4> dx, dy;  ///< by how much a pixel's step changes it
+    std::array<float, 2> inside;
+    std::array<float, 2> dx, dy;  ///< by how much a pixel's step changes it
 
     /// No side is anywhere near.
-    static TriangleSides none() { return {{0.5F, 0.5F, 0.5F, 0.5F}, {}, {}}; }
+    static TriangleSides none() { return {{1.0F / 3.0F, 1.0F / 3.0F}, {}, {}}; }
 };
 
 /// Of the triangles that sixteen points see; where they see none, of none.

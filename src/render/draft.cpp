@@ -66,15 +66,16 @@ LineThinning enlarged(LineThinning thinning, const Enlargement& enlargement) {
     return thinning;
 }
 
-/// Enlarges the shaded pixels in bands of rows.
-SideWork enlarging(const PixelEnlarger& enlarger, Film& large) {
+/// Enlarges the shaded pixels in bands of rows. `faces`: null if there are none.
+SideWork enlarging(const PixelEnlarger& enlarger, FaceTiling* faces, Film& large) {
     constexpr int kRows = 32;
     const int height = large.size().height;
-    return {static_cast<std::size_t>((height + kRows - 1) / kRows), [&, height](std::size_t band) {
+    const auto bands = static_cast<std::size_t>((height + kRows - 1) / kRows);
+    return {bands, [&enlarger, &large, faces, height](std::size_t band) {
                 const int first = static_cast<int>(band) * kRows;
-                for (int y = first; y < std::min(height, first + kRows); ++y) {
-                    enlarger.enlarge_row(y, large);
-                }
+                const int last = std::min(height, first + kRows);
+                for (int y = first; y < last; ++y) enlarger.enlarge_row(y, large);
+                if (faces != nullptr) faces->look_nowhere(first, last);
             }};
 }
 
@@ -86,21 +87,23 @@ RenderStats render_fewer_rays(const Pipeline& few, const Pipeline& full,
     const Edges large(full);
     const int threads = few.settings.threads > 0 ? few.settings.threads : hardware_threads();
     const PixelEnlarger enlarger(enlargement, few.film.display());
-    const SideWork rows = enlarging(enlarger, full.film);
     const std::size_t tiles = small.search_tiles.size();
-    WorkLoop loop(threads, control, tiles + rows.items + 1 + large.draw_tiles.size());
+    WorkLoop loop(threads, control, tiles + 1 + large.draw_tiles.size());
     LineSearch search(small, loop);
+    FoundLines& found = search.found();
+    FaceTiling* const faces = found.tiling ? &*found.tiling : nullptr;
     search.search_tiles();
+    const SideWork rows = enlarging(enlarger, faces, full.film);
+    loop.expect(rows.items);
     search.mend(rows);
 
-    FoundLines& found = search.found();
     FoundLines lines;
     lines.tiles.resize(large.search_tiles.size());
     // Each cell of the lattice belongs to one tile, so threads sharpen different pixels.
     loop.run(1 + tiles, [&](std::size_t i, std::size_t) {
         if (i > 0) {
             enlarger.sharpen(small.search_tiles[i - 1], found.tiles[i - 1].segments, full.film,
-                             found.tiling ? &*found.tiling : nullptr);
+                             faces);
             return;
         }
         search.finish();
@@ -149,7 +152,7 @@ Film render_draft(const Scene& scene, const Tracer& tracer, const Settings& sett
         }
         result = render_stencils(small, control);
         const PixelEnlarger enlarger(enlargement, small_film.display());
-        const SideWork rows = enlarging(enlarger, film);
+        const SideWork rows = enlarging(enlarger, nullptr, film);
         WorkLoop loop(result.threads, control, rows.items);
         loop.run(rows.items, [&](std::size_t band, std::size_t) { rows.body(band); });
     });

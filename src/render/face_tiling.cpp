@@ -1,6 +1,7 @@
 #include "render/face_tiling.h"
 
 #include <algorithm>
+#include <atomic>
 #include <bit>
 #include <cmath>
 #include <cstring>
@@ -23,6 +24,16 @@ bool has_no_line(const Mesh& mesh, std::uint32_t triangle, std::size_t edge) {
     return twin < Mesh::kManyTwins && mesh.faces[twin / 3] == mesh.faces[triangle];
 }
 
+/// A bit for each of those edges.
+std::uint32_t sides_without_line(const Mesh& mesh, std::uint32_t triangle) {
+    if (mesh.edge_flags.empty() && mesh.faces.empty()) return 0;
+    std::uint32_t without = 0;
+    for (std::size_t edge = 0; edge < 3; ++edge) {
+        without |= has_no_line(mesh, triangle, edge) ? 1U << edge : 0U;
+    }
+    return without;
+}
+
 }  // namespace
 
 FaceTiling::FaceTiling(const Scene& scene, const Projection& projection,
@@ -34,6 +45,7 @@ FaceTiling::FaceTiling(const Scene& scene, const Projection& projection,
       blocks_across_((small_.width + kBlockSide - 1) / kBlockSide),
       seen_(static_cast<std::size_t>(blocks_across_) *
             static_cast<std::size_t>((small_.height + kBlockSide - 1) / kBlockSide)),
+      passed_(seen_.size()),
       spots_(seen_.size() * kLanes) {
     for (const Object& object : scene.objects()) {
         meshes_.push_back(std::get_if<Mesh>(&object.shape));
@@ -67,10 +79,9 @@ FaceTiling::FaceTiling(const Scene& scene, const Projection& projection,
 void FaceTiling::put(int x, int y, const HitPacket& hits, const SidesPacket* sides) {
     if (x < 0 || y < 0 || x >= small_.width || y >= small_.height) return;
     const std::size_t k = block(x, y);
-    TilingSpot* const spots = spots_.data() + k * kLanes;
     bool any = false;
     for (int i = 0; i < kLanes; ++i) {
-        TilingSpot& spot = spots[i];
+        TilingSpot& spot = spots_[k * kLanes + static_cast<std::size_t>(i)];
         const std::uint32_t object = hits.object[i];
         const Mesh* const mesh = object == kNoObject ? nullptr : meshes_[object];
         spot.object = TilingSpot::kNone;
@@ -79,19 +90,10 @@ void FaceTiling::put(int x, int y, const HitPacket& hits, const SidesPacket* sid
         const std::uint32_t triangle = hits.primitive[i];
         const Vec2f point{static_cast<float>(x + i % kBlockSide) + 0.5F,
                           static_cast<float>(y + i / kBlockSide) + 0.5F};
-        const TriangleSides own = sides != nullptr ? (*sides)[static_cast<std::size_t>(i)]
-                                                   : project_sides(*mesh, triangle, point);
-        std::uint32_t without = 0;
-        if (!mesh->edge_flags.empty() || !mesh->faces.empty()) {
-            for (std::size_t edge = 0; edge < 3; ++edge) {
-                without |= has_no_line(*mesh, triangle, edge) ? 1U << edge : 0U;
-            }
-        }
-        spot = {{own.inside[0], own.inside[1]},
-                {own.dx[0], own.dx[1]},
-                {own.dy[0], own.dy[1]},
-                hits.t[i],
-                object << 3U | without};
+        spot.sides = sides != nullptr ? (*sides)[static_cast<std::size_t>(i)]
+                                      : project_sides(*mesh, triangle, point);
+        spot.t = hits.t[i];
+        spot.object = object << 3U | sides_without_line(*mesh, triangle);
     }
     seen_[k] = any ? 1 : 0;
 }
@@ -110,8 +112,8 @@ TriangleSides FaceTiling::project_sides(const Mesh& mesh, std::uint32_t triangle
     const float area = u.x * v.y - u.y * v.x;
     TriangleSides sides = TriangleSides::none();
     if (area == 0.0F) return sides;
-    for (std::size_t k = 0; k < 3; ++k) {
-        const Vec2f side = corners[(k + 1) % 3] - corners[k];
+    for (std::size_t k = 0; k < 2; ++k) {
+        const Vec2f side = corners[k + 1] - corners[k];
         const Vec2f way = point - corners[k];
         sides.inside[k] = (side.x * way.y - side.y * way.x) / area;
         sides.dx[k] = -side.y / area;
@@ -125,10 +127,11 @@ TriangleSides FaceTiling::project_sides(const Mesh& mesh, std::uint32_t triangle
 float FaceTiling::length_at(int x, int y, int lane) const {
     const TilingSpot& spot = spots_[block(x, y) * kLanes + static_cast<std::size_t>(lane)];
     if (spot.object == TilingSpot::kNone) return 0.0F;
+    const auto& [inside, step_x, step_y] = spot.sides;
     float length = 0.0F;
     for (unsigned k = 0; k < 3; ++k) {
-        const float dx = k < 2 ? spot.dx[k] : -spot.dx[0] - spot.dx[1];
-        const float dy = k < 2 ? spot.dy[k] : -spot.dy[0] - spot.dy[1];
+        const float dx = k < 2 ? step_x[k] : -step_x[0] - step_x[1];
+        const float dy = k < 2 ? step_y[k] : -step_y[0] - step_y[1];
         length += std::sqrt(dx * dx + dy * dy);
     }
     // The lattice of the picture in full notices only one of the lines that cross between two
@@ -140,40 +143,51 @@ float FaceTiling::length_at(int x, int y, int lane) const {
 bool FaceTiling::sees(int x, int y) const {
     const auto& columns = columns_[static_cast<std::size_t>(x / kBlockSide)].nearest;
     const auto& rows = rows_[static_cast<std::size_t>(y / kBlockSide)].nearest;
-    const auto seen = [&](int column, int row) { return seen_[block(column, row)] != 0; };
+    const auto seen = [&](int column, int row) {
+        const std::size_t k = block(column, row);
+        return seen_[k] != 0 || passed_[k] != 0;
+    };
     if (seen(columns.front(), rows.front())) return true;
-    const bool one_column = columns.front() == columns.back();
-    const bool one_row = rows.front() == rows.back();
+    const bool one_column = columns.front() / kBlockSide == columns.back() / kBlockSide;
+    const bool one_row = rows.front() / kBlockSide == rows.back() / kBlockSide;
     return (!one_column && seen(columns.back(), rows.front())) ||
            (!one_row && seen(columns.front(), rows.back())) ||
            (!one_column && !one_row && seen(columns.back(), rows.back()));
 }
 
+void FaceTiling::look_nowhere(int first_row, int last_row) {
+    const std::size_t across = columns_.size() * kLanes;
+    const auto row = [](int y) {
+        return static_cast<std::size_t>((y + kBlockSide - 1) / kBlockSide);
+    };
+    std::fill(aside_.data() + row(first_row) * across, aside_.data() + row(last_row) * across, 0);
+}
+
 void FaceTiling::look_at(int x, int y, int column, int row) {
     const auto bx = static_cast<std::size_t>(x / kBlockSide);
     const auto by = static_cast<std::size_t>(y / kBlockSide);
-    const int right = column - columns_[bx].nearest[static_cast<std::size_t>(x % kBlockSide)];
-    const int below = row - rows_[by].nearest[static_cast<std::size_t>(y % kBlockSide)];
+    const int near_column = columns_[bx].nearest[static_cast<std::size_t>(x % kBlockSide)];
+    const int near_row = rows_[by].nearest[static_cast<std::size_t>(y % kBlockSide)];
+    // Other threads may say so, too.
+    std::atomic_ref(passed_[block(near_column, near_row)]).store(1, std::memory_order_relaxed);
+    const int right = column - near_column;
+    const int below = row - near_row;
     const int code = 1 + (std::clamp(below, -1, 1) + 1) * 3 + std::clamp(right, -1, 1) + 1;
     const auto lane = static_cast<std::size_t>(y % kBlockSide * kBlockSide + x % kBlockSide);
     aside_[(by * columns_.size() + bx) * kLanes + lane] = static_cast<std::uint8_t>(code);
 }
 
-/// Whether all pixels of a block lie about one point of the small picture.
-bool FaceTiling::is_plain(const std::uint8_t* aside, const Places& columns,
-                          const Places& rows) const {
+/// Whether any pixel of a block looks aside.
+bool FaceTiling::looks_aside(const std::uint8_t* aside) {
     std::array<std::uint64_t, 2> any;
     static_assert(sizeof(any) == kLanes);
     std::memcpy(any.data(), aside, sizeof(any));
-    return (any[0] | any[1]) == 0 && columns.nearest.front() == columns.nearest.back() &&
-           rows.nearest.front() == rows.nearest.back();
+    return (any[0] | any[1]) != 0;
 }
 
 const TilingSpot* FaceTiling::spot_at(int column, int row) const {
     if (seen_[block(column, row)] == 0) return nullptr;
-    const TilingSpot& spot =
-        spots_[block(column, row) * kLanes +
-               static_cast<std::size_t>(row % kBlockSide * kBlockSide + column % kBlockSide)];
+    const TilingSpot& spot = spots_[spot_index(column, row)];
     return spot.object == TilingSpot::kNone ? nullptr : &spot;
 }
 
@@ -185,8 +199,10 @@ void FaceTiling::for_each_spot(int x, int y, const Visit& visit) const {
     const auto by = static_cast<std::size_t>(y / kBlockSide);
     const Places& columns = columns_[bx];
     const Places& rows = rows_[by];
-    const std::uint8_t* const aside = aside_.data() + (by * columns_.size() + bx) * kLanes;
-    if (is_plain(aside, columns, rows)) {
+    const std::uint8_t* const aside = aside_of(x, y);
+    // All lie about one point.
+    if (columns.nearest.front() == columns.nearest.back() &&
+        rows.nearest.front() == rows.nearest.back() && !looks_aside(aside)) {
         const TilingSpot* const spot = spot_at(columns.nearest.front(), rows.nearest.front());
         if (spot != nullptr) visit(*spot, columns.off, rows.off, kAllPixels);
         return;

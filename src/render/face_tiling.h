@@ -30,6 +30,9 @@ class FaceTiling {
     /// different blocks at the same time. `sides` as far as they are known, else null.
     void put(int x, int y, const HitPacket& hits, const SidesPacket* sides);
 
+    /// To be called for all rows of the large picture, before any of them looks aside. Bands of
+    /// rows begin with a row of blocks; threads may take different ones.
+    void look_nowhere(int first_row, int last_row);
     /// Pixel (x, y) of the large picture, which is in a cell of the lattice through which a line
     /// runs, sees the same surface as that corner of the cell, and not as the nearest one.
     void look_at(int x, int y, int column, int row);
@@ -44,7 +47,7 @@ class FaceTiling {
     bool measure(int x, int y, float reach, NearestEdges& nearest) const;
     /// The same where all lines have one ink, see BorderMap::ink.
     bool ink(int x, int y, FaceBand band, const Lanes<float>& others, Lanes<float>& alpha) const;
-    /// Nothing: neighbours in a row are neighbours in memory.
+    /// Nothing: to find out where a block's spots are takes as long as to wait for them.
     void prefetch(int /*x*/, int /*y*/) const {}
 
   private:
@@ -59,8 +62,17 @@ class FaceTiling {
         return static_cast<std::size_t>(y / kBlockSide) * static_cast<std::size_t>(blocks_across_) +
                static_cast<std::size_t>(x / kBlockSide);
     }
+    std::size_t spot_index(int column, int row) const {
+        return block(column, row) * kLanes +
+               static_cast<std::size_t>(row % kBlockSide * kBlockSide + column % kBlockSide);
+    }
     TriangleSides project_sides(const Mesh& mesh, std::uint32_t triangle, Vec2f point) const;
-    bool is_plain(const std::uint8_t* aside, const Places& columns, const Places& rows) const;
+    const std::uint8_t* aside_of(int x, int y) const {
+        return aside_.data() + (static_cast<std::size_t>(y / kBlockSide) * columns_.size() +
+                                static_cast<std::size_t>(x / kBlockSide)) *
+                                   kLanes;
+    }
+    static bool looks_aside(const std::uint8_t* aside);
     const TilingSpot* spot_at(int column, int row) const;
     template <class Visit>
     void for_each_spot(int x, int y, const Visit& visit) const;
@@ -72,10 +84,11 @@ class FaceTiling {
     int blocks_across_;
     std::vector<Places> columns_, rows_;  ///< by blocks of the large picture
     std::vector<std::uint8_t> seen_;      ///< a block of the small picture: it sees a mesh
+    std::vector<std::uint8_t> passed_;    ///< likewise: pixels about it look aside
     std::vector<TilingSpot, UninitializedAllocator<TilingSpot>> spots_;
     /// By blocks of the large picture, a pixel: 0, or where the point that it sees the surface of
     /// lies from the nearest one, see look_at.
-    std::vector<std::uint8_t> aside_;
+    std::vector<std::uint8_t, UninitializedAllocator<std::uint8_t>> aside_;
 };
 
 }  // namespace ink

@@ -56,10 +56,10 @@ HWY_INLINE Number for_each_family(const TilingLines& lines, const Lanes<float>& 
 }
 
 TilingLines find_lines_about(const TilingSpot& spot, float factor) {
-    static_assert(offsetof(TilingSpot, dx) == 2 * sizeof(float));
-    static_assert(offsetof(TilingSpot, dy) == 4 * sizeof(float));
-    const auto inside_dx = hn::LoadU(kFour, spot.inside.data());
-    const auto dy_rest = hn::LoadU(kFour, spot.dy.data());
+    static_assert(offsetof(TriangleSides, dx) == 2 * sizeof(float));
+    static_assert(offsetof(TilingSpot, t) == sizeof(TriangleSides));
+    const auto inside_dx = hn::LoadU(kFour, spot.sides.inside.data());
+    const auto dy_rest = hn::LoadU(kFour, spot.sides.dy.data());
     // What is left of one, and of nothing.
     alignas(16) constexpr std::array kWhole{1.0F, 1.0F, 0.0F, 0.0F};
     const auto whole = hn::Load(kFour, kWhole.data());

@@ -3,18 +3,18 @@
 #include <array>
 #include <cstdint>
 
+#include "accel/tracer.h"
 #include "base/lanes.h"
 #include "render/face_band.h"
 #include "render/nearest_edges.h"
 
 namespace ink {
 
-/// A triangle and how a point lies in it: of two of its sides as in TriangleSides, those of the
-/// third follow.
+/// A triangle that a point sees.
 struct TilingSpot {
     static constexpr std::uint32_t kNone = 0xFFFFFFFFU;
 
-    std::array<float, 2> inside, dx, dy;
+    TriangleSides sides;
     float t;
     std::uint32_t object;  ///< and in its lowest three bits which sides have no line; or kNone
 };
