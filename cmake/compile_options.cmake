@@ -12,8 +12,10 @@ target_compile_options(inktrace_options INTERFACE
     -Wall -Wextra -Wpedantic -Wconversion -Wshadow
     $<$<BOOL:${INKTRACE_WERROR}>:-Werror>)
 if(INKTRACE_SANITIZE)
+    # Lines for stack traces, but neither variables nor types: they take a third of the time to compile.
+    set(CMAKE_CXX_FLAGS_RELWITHDEBINFO "-O1 -g1 -DNDEBUG")
     target_compile_options(inktrace_options INTERFACE
-        -fsanitize=${INKTRACE_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer -O1
+        -fsanitize=${INKTRACE_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer
         # Instrumented code makes GCC see uninitialised values where there are none.
         $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)
     target_link_options(inktrace_options INTERFACE -fsanitize=${INKTRACE_SANITIZE})
@@ -39,7 +41,9 @@ endfunction()
 # inktrace_compile_fast(TARGET): for code that is compiled more often than it runs (tests, the
 # command line), where optimising takes half of the build and gains nothing.
 function(inktrace_compile_fast target)
-    if(NOT INKTRACE_SANITIZE)
+    if(INKTRACE_SANITIZE)
+        target_compile_options(${target} PRIVATE -O0)
+    else()
         target_compile_options(${target} PRIVATE -O1)
     endif()
 endfunction()
