@@ -74,6 +74,33 @@ Mended mend(const World& world, float width) {
                 world, width);
 }
 
+/// A line along x, as the lattice cuts it.
+void add_fold(std::vector<Segment>& lines, float from, float to, float y) {
+    for (float x = from; x < to; x += 1.0F) {
+        Segment& segment = lines.emplace_back();
+        segment.a = {x, y};
+        segment.b = {x + 1.0F, y};
+        segment.type = LineType::self_occlusion;
+        segment.owner = segment.left = segment.right = 1;
+        segment.spans_cell = true;
+    }
+}
+
+/// What points of the picture see of the plane z = 0 from a height of 2, straight down.
+void sample_plane(std::span<const Vec2f> points, std::span<Sample> out) {
+    std::ranges::transform(points, out.begin(), [](Vec2f p) {
+        return Sample{1, {p.x, -p.y, 0.0F}, {0, 0, 1}, 2.0F};
+    });
+}
+Viewpoint above_plane() {
+    Viewpoint viewpoint;
+    viewpoint.dir = {0, 0, -1};
+    viewpoint.parallel = true;
+    viewpoint.origin = {{0, 0, 2}, {1, 0, 0}, {0, -1, 0}};
+    viewpoint.direction = {{0, 0, -1}, {}, {}};
+    return viewpoint;
+}
+
 TEST(BrokenFold, IsOneLineWhereTheSurfaceStaysSteep) {
     const World world{{broken_fold(0.1, 40.0, {{5, 13}, {20, 31}, {37, 43}})}};
     const Mended mended = mend(world, 2.0F);
@@ -108,6 +135,37 @@ TEST(BrokenFold, IsFollowedFromOneOfTheTwoEndsOfAGap) {
     EXPECT_LE(steps, static_cast<int>(kTo - kFrom));
 }
 
+/// The valley from the first fold, a single segment, leads to the end of the second, from which no
+/// valley goes on: ahead of it the surface faces the viewer. Both ends go to the right.
+TEST(BrokenFold, IsFollowedToAnEndFromWhichNoValleyGoesOn) {
+    const World steep{{broken_fold(0.1, 0.0, {})}};
+    const auto line = static_cast<float>(kLine);
+    for (const float side : {1.0F, -1.0F}) {
+        const auto on_second = [&](int from_end) {
+            const auto away = static_cast<float>(from_end);
+            return Vec2f{25.0F - away, line + side * (0.3F + away)};
+        };
+        const Vec2f end = on_second(0);
+        std::vector<Segment> lines;
+        add_fold(lines, 17.5F, 18.5F, line);
+        for (int k = 15; k > 0; --k) {
+            Segment& segment = lines.emplace_back(lines.front());
+            segment.a = on_second(k);
+            segment.b = on_second(k - 1);
+        }
+        const auto sample = [&](std::span<const Vec2f> points, std::span<Sample> out) {
+            std::ranges::transform(points, out.begin(), [&](Vec2f p) {
+                Sample seen = steep(p);
+                if (p.x - end.x - side * (p.y - end.y) > 0.3F) seen.normal = {0, 0, 1};
+                return seen;
+            });
+        };
+        const FoldRepairs repairs = mend_folds(lines, above_plane(), 1.0F, 2.0F, sample);
+        ASSERT_FALSE(repairs.bridges.empty());
+        for (const Segment& bridge : repairs.bridges) EXPECT_LE(bridge.b.x, end.x);
+    }
+}
+
 TEST(BrokenFold, StaysBrokenWhereTheSurfaceFacesTheViewer) {
     const Mended mended = mend({{broken_fold(0.4, 40.0, {{5, 13}, {20, 31}})}}, 2.0F);
     EXPECT_TRUE(mended.repairs.bridges.empty());
@@ -132,33 +190,6 @@ TEST(BrokenFold, IsOneLineOverAShortGapWithoutAValley) {
     // Over more than four widths it is two.
     EXPECT_TRUE(mend({{broken_fold(0.15, 40.0, {{5, 16}, {30, 43}}, kEven)}}, 2.0F)
                     .repairs.bridges.empty());
-}
-
-/// A line along x, as the lattice cuts it.
-void add_fold(std::vector<Segment>& lines, float from, float to, float y) {
-    for (float x = from; x < to; x += 1.0F) {
-        Segment& segment = lines.emplace_back();
-        segment.a = {x, y};
-        segment.b = {x + 1.0F, y};
-        segment.type = LineType::self_occlusion;
-        segment.owner = segment.left = segment.right = 1;
-        segment.spans_cell = true;
-    }
-}
-
-/// What points of the picture see of the plane z = 0 from a height of 2, straight down.
-void sample_plane(std::span<const Vec2f> points, std::span<Sample> out) {
-    std::ranges::transform(points, out.begin(), [](Vec2f p) {
-        return Sample{1, {p.x, -p.y, 0.0F}, {0, 0, 1}, 2.0F};
-    });
-}
-Viewpoint above_plane() {
-    Viewpoint viewpoint;
-    viewpoint.dir = {0, 0, -1};
-    viewpoint.parallel = true;
-    viewpoint.origin = {{0, 0, 2}, {1, 0, 0}, {0, -1, 0}};
-    viewpoint.direction = {{0, 0, -1}, {}, {}};
-    return viewpoint;
 }
 
 TEST(DoubledFold, IsOneWhereItsTwoStrokesTouch) {

@@ -17,6 +17,9 @@ namespace {
 
 /// In the arena at hand.
 void run(std::size_t count, const std::function<void(std::size_t, std::size_t)>& body) {
+    // A loop around this one that is cancelled must not cut it short: its caller would go on with
+    // what was not done.
+    tbb::task_group_context context(tbb::task_group_context::isolated);
     // Grain 1: a tile is already a large piece of work, and tiles differ in cost.
     tbb::parallel_for(
         tbb::blocked_range<std::size_t>(0, count, 1),
@@ -25,7 +28,7 @@ void run(std::size_t count, const std::function<void(std::size_t, std::size_t)>&
                 static_cast<std::size_t>(tbb::this_task_arena::current_thread_index());
             for (std::size_t i = range.begin(); i != range.end(); ++i) body(i, worker);
         },
-        tbb::simple_partitioner{});
+        tbb::simple_partitioner{}, context);
 }
 
 /// Whether the arena at hand has just so many threads.

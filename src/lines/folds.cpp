@@ -194,6 +194,7 @@ class FoldMender {
         for (const std::uint32_t k : followed) {
             const std::uint32_t target = ends_[k].reached;
             if (target == kNone || !is_fold(target)) continue;
+            if (ends_[k].path.empty()) continue;  // it is itself where another way has come to
             for (const std::uint32_t met : {ends_at[2 * target], ends_at[2 * target + 1]}) {
                 if (met == kNone || ends_[met].reached != kNone) continue;
                 if (length(ends_[met].point - ends_[k].path.back()) >= spacing_) continue;
