@@ -135,12 +135,12 @@ TEST(TilingInk, IsTheAreaUnderABandAlongTheNearestLine) {
     std::uniform_real_distribution<float> number(-1.0F, 1.0F);
     std::uniform_real_distribution<float> place(-3.0F, 3.0F);
     for (std::uint32_t n = 0; n < kTries; ++n) {
-        TilingSpot spot{{number(random), number(random)},
-                        {number(random), number(random)},
-                        {number(random), number(random)},
+        TilingSpot spot{{{number(random), number(random)},
+                         {number(random), number(random)},
+                         {number(random), number(random)}},
                         1.0F,
-                        n % 8};                   // with any sides left out
-        if (n % 16 == 0) spot.dx = spot.dy = {};  // no line is anywhere near
+                        n % 8};  // with any sides left out
+        if (n % 16 == 0) spot.sides = TriangleSides::none();
         Lanes<float> x;
         Lanes<float> y;
         for (int i = 0; i < kLanes; ++i) {

@@ -14,9 +14,13 @@
 HWY_BEFORE_NAMESPACE();
 namespace ink::HWY_NAMESPACE {
 
-/// The cube that holds a unit shape, or the square in its middle, on the screen.
+using DoubleMask = hn::Mask<Doubles>;
+
+/// The cube that holds a unit shape, or the square in its middle, on the screen. What has no form
+/// has no bounds either: of no numbers, they would spoil those of its cluster.
 HWY_INLINE void bound_glyphs(const Basis& basis, bool flat, const Triple& c, const Triple& x,
-                             const Triple& y, const Triple& z, int i, ScreenPacket& packet) {
+                             const Triple& y, const Triple& z, DoubleMask has_form, int i,
+                             ScreenPacket& packet) {
     const Double infinity = number(std::numeric_limits<double>::infinity());
     CornerBounds bounds = CornerBounds::none();
     Double width = infinity;  // of a pixel, at the corner where it is least
@@ -34,6 +38,12 @@ HWY_INLINE void bound_glyphs(const Basis& basis, bool flat, const Triple& c, con
     bounds.top = hn::IfThenElse(beside, hn::Neg(infinity), bounds.top);
     bounds.right = hn::IfThenElse(beside, infinity, bounds.right);
     bounds.bottom = hn::IfThenElse(beside, infinity, bounds.bottom);
+    const CornerBounds none = CornerBounds::none();
+    bounds.left = hn::IfThenElse(has_form, bounds.left, none.left);
+    bounds.top = hn::IfThenElse(has_form, bounds.top, none.top);
+    bounds.right = hn::IfThenElse(has_form, bounds.right, none.right);
+    bounds.bottom = hn::IfThenElse(has_form, bounds.bottom, none.bottom);
+    bounds.depth = hn::IfThenElse(has_form, bounds.depth, none.depth);
     bounds.put(i, packet.bounds);
 }
 
@@ -74,13 +84,8 @@ void lay_glyphs(Basis basis, const GlyphLanes& glyphs, ScreenPacket& packet) {
             finite = hn::And(finite, hn::Lt(size, number(1e30)));
         }
         put(hn::Div(number(basis.slope_step), pixel), form[12], i);
-        bound_glyphs(basis, flat, c, turned(basis, x), turned(basis, y), turned(basis, z), i,
-                     packet);
-        const Half kept = rounded(hn::IfThenElseZero(finite, number(1.0)));  // to a mask of floats
-        put(hn::IfThenElse(hn::Gt(kept, hn::Zero(kHalves)),
-                           hn::LoadU(kHalves, packet.bounds.left.data() + i),
-                           number_f(std::numeric_limits<float>::infinity())),
-            packet.bounds.left, i);
+        bound_glyphs(basis, flat, c, turned(basis, x), turned(basis, y), turned(basis, z), finite,
+                     i, packet);
     }
     lay_side_by_side(form, 16, packet.forms);
     lay_side_by_side(hit, 12, packet.hit);
