@@ -319,6 +319,32 @@ TEST(ScreenTracer, GivesRastersAndPacketsBesideThemTheHitsOfTheirPoints) {
     }
 }
 
+/// They have no bounds, and must leave those of their cluster alone, which are asked after its
+/// first use.
+TEST(ScreenTracer, GivesTheHitsOfSticksBesideOnesWithoutALength) {
+    for (std::size_t without = 1; without < kLanes; ++without) {
+        std::vector<Object> objects = chain_of_sticks(3, 20, 1.0F);
+        auto& placements = std::get<Glyphs>(objects[1].shape).placements;
+        for (std::size_t k = 0; k < without; ++k) {
+            const Vec3d end = to_double(placements[k].origin);
+            placements[k] = placement_between(end, end, 0.02);
+        }
+        const Seen seen(std::move(objects), {}, kSmall);
+        const auto cells = seen.pixels();
+        std::vector<PointPacket> points = cells;
+        points.insert(points.end(), cells.begin(), cells.end());
+        const auto hits = seen.trace_raster(points);
+        std::size_t count = 0;
+        for (std::size_t k = 0; k < cells.size(); ++k) {
+            for (int i = 0; i < kLanes; ++i) {
+                expect_same_bits(hits[cells.size() + k], i, hits[k], i);
+                count += hits[k].object[i] == 1 ? 1 : 0;
+            }
+        }
+        EXPECT_GT(count, 0U);
+    }
+}
+
 TEST(SceneTracer, LeavesPixelsThatAreFullOfPrimitivesToEmbree) {
     std::mt19937 random(16);
     std::vector<Sphere> dust;

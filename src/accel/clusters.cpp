@@ -27,8 +27,8 @@ std::uint64_t spread(std::uint64_t v) {
 std::uint64_t morton_code(Vec3f p) {
     const auto cell = [](float v) {
         constexpr float kCells = 1 << 21;
-        return static_cast<std::uint64_t>(
-            std::clamp((v + 1.0F) * 0.5F * kCells, 0.0F, kCells - 1.0F));
+        const float place = std::max(0.0F, (v + 1.0F) * 0.5F * kCells);  // of no number, zero
+        return static_cast<std::uint64_t>(std::min(place, kCells - 1.0F));
     };
     return spread(cell(p.x)) | spread(cell(p.y)) << 1U | spread(cell(p.z)) << 2U;
 }
