@@ -76,8 +76,8 @@ FaceTiling::FaceTiling(const Scene& scene, const Projection& projection,
     aside_.resize(columns_.size() * rows_.size() * kLanes);
 }
 
-void FaceTiling::put(int x, int y, const HitPacket& hits, const SidesPacket* sides) {
-    if (x < 0 || y < 0 || x >= small_.width || y >= small_.height) return;
+bool FaceTiling::put(int x, int y, const HitPacket& hits, const SidesPacket* sides) {
+    if (x < 0 || y < 0 || x >= small_.width || y >= small_.height) return false;
     const std::size_t k = block(x, y);
     bool any = false;
     for (int i = 0; i < kLanes; ++i) {
@@ -96,6 +96,7 @@ void FaceTiling::put(int x, int y, const HitPacket& hits, const SidesPacket* sid
         spot.object = object << 3U | sides_without_line(*mesh, triangle);
     }
     seen_[k] = any ? 1 : 0;
+    return true;
 }
 
 TriangleSides FaceTiling::project_sides(const Mesh& mesh, std::uint32_t triangle,

@@ -28,7 +28,8 @@ class FaceTiling {
 
     /// What 4 x 4 points of the small picture see; blocks beyond it are dropped. Threads may put
     /// different blocks at the same time. `sides` as far as they are known, else null.
-    void put(int x, int y, const HitPacket& hits, const SidesPacket* sides);
+    /// False if it lies beyond the picture: it is not kept.
+    bool put(int x, int y, const HitPacket& hits, const SidesPacket* sides);
 
     /// To be called for all rows of the large picture, before any of them looks aside. Bands of
     /// rows begin with a row of blocks; threads may take different ones.

@@ -35,7 +35,7 @@ void LineFinder::map_tiling(std::size_t first, std::size_t count) {
         const Block& block = blocks_[first + k];
         if (block.columns < kBlockSide || block.rows < kBlockSide) continue;
         const HitPacket& hits = hits_[first + k];
-        tiling_->put(block.x, block.y, hits, known ? &sides_[k] : nullptr);
+        if (!tiling_->put(block.x, block.y, hits, known ? &sides_[k] : nullptr)) continue;
         // Squares of a density are several points wide, so a quarter of all will do.
         constexpr std::array kPoints{2, 4, 11, 13};
         constexpr float kArea = static_cast<float>(kLanes) / static_cast<float>(kPoints.size());
