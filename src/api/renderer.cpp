@@ -94,13 +94,17 @@ Settings with_view(const Settings& settings, const ink::ViewSettings& view) {
     return copy;
 }
 
+/// Where the scene stays beside the legend.
+ink::ViewSettings framed_view(const ink::Scene& scene, const ink::Settings& settings) {
+    return ink::beside(ink::make_legend(scene, settings), settings.view, settings.size);
+}
+
 }  // namespace
 
 Settings Renderer::with_camera(const Settings& settings) const {
     return ink::guard([&] {
         const ink::Settings& inner = settings.impl().settings;
-        const ink::ViewSettings view =
-            ink::beside(ink::make_legend(impl_->scene, inner), inner.view, inner.size);
+        const ink::ViewSettings view = framed_view(impl_->scene, inner);
         const ink::Camera camera(impl_->scene, view, inner.size);
         return with_view(settings, ink::explicit_view(camera, impl_->scene, view));
     });
@@ -117,7 +121,7 @@ Settings Renderer::with_turned_camera(const Settings& settings, double turn_deg)
 std::optional<Hit> Renderer::pick(const Settings& settings, double x, double y) const {
     return ink::guard([&]() -> std::optional<Hit> {
         ink::Settings inner = settings.impl().settings;
-        inner.view = ink::beside(ink::make_legend(impl_->scene, inner), inner.view, inner.size);
+        inner.view = framed_view(impl_->scene, inner);
         const auto found = ink::pick(impl_->scene, *impl_->tracer, inner,
                                      {static_cast<float>(x), static_cast<float>(y)});
         if (!found) return std::nullopt;

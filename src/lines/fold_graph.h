@@ -44,8 +44,10 @@ class FoldGraph {
     /// A point on the line some pixels before its end, `enough` if it is that long.
     Vec2f back_from(FoldEnd end, float enough) const;
 
-    /// An end of a piece, and how far it is away along the piece. End 2 k is a of fold k, 2 k + 1
-    /// is b.
+    /// End 2 k is a of fold k, 2 k + 1 is b.
+    static std::uint32_t number(FoldEnd end) { return 2 * end.fold + (end.at_b ? 1 : 0); }
+
+    /// An end of a piece, and how far it is away along the piece.
     struct NearEnd {
         std::uint32_t end = std::numeric_limits<std::uint32_t>::max();
         float away = std::numeric_limits<float>::infinity();
@@ -54,7 +56,6 @@ class FoldGraph {
     NearEnd end_near(FoldEnd towards, Vec2f from) const;
 
   private:
-    static std::uint32_t number(FoldEnd end) { return 2 * end.fold + (end.at_b ? 1 : 0); }
     static FoldEnd end_of(std::uint32_t number) { return {number / 2, number % 2 != 0}; }
 
     std::span<const Segment> lines_;

@@ -76,7 +76,7 @@ class FoldMender {
     /// Of an end of a fold.
     template <class End>
     static std::size_t number(const End& end) {
-        return 2 * std::size_t{end.fold} + (end.at_b ? 1 : 0);
+        return FoldGraph::number({end.fold, end.at_b});
     }
 
     /// The nearest line of another piece, no farther away than most of a lattice cell.
