@@ -46,12 +46,12 @@ TEST_F(CommandLine, AnimationDrawsAPictureAFrame) {
     expect_says(outcome.err, {"--frame 1:7", "3 frames, 0 to 2"});
 }
 
-/// Columns of a square RGBA picture that are not all white.
-std::vector<int> inked_columns(const std::vector<std::uint8_t>& rgba, int side) {
+/// Columns of the upper rows of a square RGBA picture that are not all white.
+std::vector<int> inked_columns(const std::vector<std::uint8_t>& rgba, int side, int rows) {
     std::vector<int> columns;
     for (int x = 0; x < side; ++x) {
         bool inked = false;
-        for (int y = 0; y < side; ++y) {
+        for (int y = 0; y < rows; ++y) {
             const auto at = static_cast<std::size_t>(4 * (y * side + x));
             inked |= rgba[at] < 250 || rgba[at + 1] < 250 || rgba[at + 2] < 250;
         }
@@ -66,7 +66,7 @@ TEST_F(CommandLine, AnimationHasRoomForEveryFrame) {
                      "--view", "front", "--compose", "shaded", "--quiet"}));
     int last = 0;  // column that the frame before ends at
     for (const char* name : {"0.png", "1.png", "2.png"}) {
-        const std::vector<int> columns = inked_columns(pixels(file(name)), 40);
+        const std::vector<int> columns = inked_columns(pixels(file(name)), 40, 40);
         ASSERT_FALSE(columns.empty()) << name;
         EXPECT_GT(columns.front(), last) << name;
         last = columns.back();
@@ -99,6 +99,20 @@ TEST_F(CommandLine, TurntableGoesRoundAndFramesTheSceneFromEverySide) {
         EXPECT_NE(read_bytes(file("t0.png")), read_bytes(file("t1.png")));
         EXPECT_TRUE(fs::exists(file("t3.png")));
         EXPECT_FALSE(fs::exists(file("t4.png")));
+    }
+}
+
+TEST_F(CommandLine, TurntableLeavesRoomForTheLegend) {
+    folder_.write("rod.csv", "x,y,z,radius,heat\n0,0,0,1,1\n9,0,0,1,7\n");
+    constexpr int kSide = 256;
+    expect_done(run({"render", "rod.csv", "--turntable", "4", "-o", "t#.png", "--size", "256x256",
+                     "--view", "front", "--lines", "none", "--color-by", "heat", "--quiet"}));
+    for (const char* name : {"t0.png", "t2.png"}) {
+        // Above the middle there is the rod alone; the legend is 33 pixels wide with its margin.
+        const std::vector<int> columns = inked_columns(pixels(file(name)), kSide, kSide / 2);
+        ASSERT_FALSE(columns.empty()) << name;
+        EXPECT_LT(columns.back(), kSide - 33) << name;
+        EXPECT_LT(columns.front(), 20) << name;
     }
 }
 

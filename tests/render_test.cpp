@@ -6,9 +6,11 @@
 #include <bit>
 #include <cmath>
 #include <cstdlib>
+#include <optional>
 #include <variant>
 
 #include "base/error.h"
+#include "camera/views.h"
 #include "drawing.h"
 #include "film/srgb_bytes.h"
 #include "lines/strength.h"
@@ -398,12 +400,14 @@ TEST(Aovs, TellDepthNormalAndPositionInWorldUnits) {
 struct Extent {
     int left, right = 0, top, bottom = 0;
 
-    Extent(Size size, Settings settings, bool orthographic) : left(size.width), top(size.height) {
+    Extent(Size size, Settings settings, bool orthographic, std::optional<double> turn_deg = {})
+        : left(size.width), top(size.height) {
         const Scene scene(
             {sphere_object({{{3, 1, 2}, 0.5F}, {{5, 1, 1}, 1.0F}, {{4, 4, 2}, 0.25F}})});
         settings.size = size;
         settings.view.margin = 0.1;
         if (orthographic) settings.view.orthographic = 0.0;
+        if (turn_deg) settings.view = turntable_view(scene, settings.view, size, *turn_deg);
         settings.shading.transparent_background = true;
         settings.compose = Compose::shaded;
         const Film film = draw(scene, settings);
@@ -437,6 +441,31 @@ TEST(AutomaticFraming, FillsWhatALegendLeavesOfThePicture) {
                 const bool touches_ends =
                     top <= size.height / 10 + 1 && bottom >= size.height * 9 / 10 - 2;
                 EXPECT_TRUE(touches_sides || touches_ends);
+            }
+        }
+    }
+}
+
+TEST(Turntable, KeepsTheSceneBesideALegendFromEverySide) {
+    for (const bool orthographic : {false, true}) {
+        for (const Size size : {Size{120, 60}, Size{60, 120}}) {
+            for (const bool is_left : {false, true}) {
+                Settings settings;
+                (is_left ? settings.view.left_taken : settings.view.right_taken) = 0.2;
+                const int first = size.width * (is_left ? 3 : 1) / 10;
+                const int last = size.width * (is_left ? 9 : 7) / 10;
+                int leftmost = size.width;
+                int rightmost = 0;
+                for (int turn_deg = 0; turn_deg < 360; turn_deg += 15) {
+                    const Extent seen(size, settings, orthographic, turn_deg);
+                    leftmost = std::min(leftmost, seen.left);
+                    rightmost = std::max(rightmost, seen.right);
+                    EXPECT_GE(seen.top, size.height / 10 - 1);
+                    EXPECT_LE(seen.bottom, size.height * 9 / 10 + 1);
+                }
+                EXPECT_GE(leftmost, first - 1);
+                EXPECT_LE(rightmost, last + 1);
+                EXPECT_NEAR(leftmost + rightmost, first + last - 1, 2);  // turns in the middle
             }
         }
     }

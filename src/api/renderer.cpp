@@ -114,7 +114,8 @@ Settings Renderer::with_turned_camera(const Settings& settings, double turn_deg)
     return ink::guard([&] {
         const ink::Settings& inner = settings.impl().settings;
         return with_view(settings,
-                         ink::turntable_view(impl_->scene, inner.view, inner.size, turn_deg));
+                         ink::turntable_view(impl_->scene, framed_view(impl_->scene, inner),
+                                             inner.size, turn_deg));
     });
 }
 

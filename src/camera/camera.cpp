@@ -11,6 +11,7 @@
 #include "base/parallel.h"
 #include "camera/principal_axes.h"
 #include "camera/supports.h"
+#include "camera/views.h"
 
 namespace ink {
 
@@ -62,13 +63,6 @@ Vec3d upright(Vec3d back, Vec3d up) {
         side = cross(std::abs(back.y) < 0.9 ? Vec3d{0, 1, 0} : Vec3d{0, 0, -1}, back);
     }
     return normalize(cross(back, normalize(side)));
-}
-
-/// Share of the half of the picture on one side that the scene may fill: what is not taken there,
-/// less the margin.
-double fit_beside(double taken, double margin) {
-    constexpr double kLeast = 0.05;
-    return std::max(1.0 - 2.0 * (taken + margin), kLeast);
 }
 
 }  // namespace

@@ -42,6 +42,11 @@ Drum drum_about(const Scene& scene, Vec3d right, Vec3d up, Vec3d back) {
 
 }  // namespace
 
+double fit_beside(double taken, double margin) {
+    constexpr double kLeast = 0.05;
+    return std::max(1.0 - 2.0 * (taken + margin), kLeast);
+}
+
 ViewSettings explicit_view(const Camera& camera, const Scene& scene, const ViewSettings& settings) {
     ViewSettings view = settings;
     const Vec3d back = to_double(camera.back());
@@ -63,23 +68,36 @@ ViewSettings turntable_view(const Scene& scene, const ViewSettings& settings, Si
     const Drum drum = drum_about(scene, right, up, back);
     const double aspect = static_cast<double>(size.width) / size.height;
     const double fit = 1.0 - 2.0 * settings.margin;
+    const double fit_left = fit_beside(settings.left_taken, settings.margin);
+    const double fit_right = fit_beside(settings.right_taken, settings.margin);
 
     ViewSettings view = settings;
     double distance = 2.0;
+    double aside = 0.0;  // of the eye, to the right: what a legend leaves may lie off the middle
     if (camera.orthographic()) {
-        const double half = std::max(drum.half_height, drum.radius / aspect) / fit;
-        if (!(*settings.orthographic > 0.0)) view.orthographic = 2.0 * half * scene.frame().unit;
+        const double fit_across = 0.5 * (fit_left + fit_right);
+        double half = camera.half_height();
+        if (!(*settings.orthographic > 0.0)) {
+            half = std::max(drum.half_height / fit, drum.radius / (aspect * fit_across));
+            view.orthographic = 2.0 * half * scene.frame().unit;
+        }
+        aside = 0.5 * (fit_left - fit_right) * half * aspect;
     } else {
-        // The drum between the four planes through the eye that bound the picture.
+        // The drum between the four planes through the eye that bound its part of the picture.
         const double slope_y = camera.half_height() * fit;
-        const double slope_x = slope_y * aspect;
-        const double by_width = drum.radius * std::hypot(1.0, slope_x) / slope_x;
+        const double slope_left = camera.half_height() * aspect * fit_left;
+        const double slope_right = camera.half_height() * aspect * fit_right;
+        const double reach_left = drum.radius * std::hypot(1.0, slope_left);
+        const double reach_right = drum.radius * std::hypot(1.0, slope_right);
+        const double by_width = (reach_left + reach_right) / (slope_left + slope_right);
         const double by_height = drum.radius + drum.half_height / slope_y;
         distance = std::max(by_width, by_height);
+        aside = 0.5 * ((slope_left - slope_right) * distance - (reach_left - reach_right));
     }
     const double turn = turn_deg * std::numbers::pi / 180.0;
     const Vec3d towards = back * std::cos(turn) + right * std::sin(turn);
-    const Vec3d middle = scene.frame().origin;
+    const Vec3d across = right * std::cos(turn) - back * std::sin(turn);
+    const Vec3d middle = scene.frame().origin + across * (aside * scene.frame().unit);
     view.look_at = middle;
     view.eye = middle + towards * (distance * scene.frame().unit);
     view.up = up;
