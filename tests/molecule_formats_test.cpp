@@ -191,6 +191,58 @@ TEST(CrystalReader, RefusesACellThatIsNone) {
                    "no _cell_length_a");
 }
 
+// ---- Symmetry ----
+
+/// What a file with its CRYST1 record, or nothing, is warned about.
+std::string warning_of_pdb(std::string_view group, std::string_view residue) {
+    const TemporaryFolder folder;
+    const FileContents contents = read_file(folder.write(
+        "a.pdb", fmt::format("CRYST1   25.669   25.669   25.669  90.00  90.00  90.00 {:<11}   1\n"
+                             "HETATM    1  C   {}     1       1.000   2.000   3.000  1.00  0.00"
+                             "           C\n",
+                             group, residue)));
+    return contents.warnings.empty() ? "" : contents.warnings.front();
+}
+
+constexpr std::string_view kNotApplied = "Only the atoms of the file are drawn";
+
+TEST(Symmetry, IsMissedWhereACrystalIsOfNoMacromolecule) {
+    EXPECT_EQ(warning_of_pdb("F m -3 m", "LIG"),
+              "Only the atoms of the file are drawn: the symmetry of its crystal (F m -3 m) is not "
+              "applied.");
+    EXPECT_EQ(warning_of_pdb("P 1", "LIG"), "");
+    EXPECT_EQ(warning_of_pdb("", "LIG"), "");
+    EXPECT_EQ(warning_of_pdb("P 21 21 21", "ALA"), "");
+    EXPECT_EQ(warning_of_pdb("P 21 21 21", " DA"), "");
+}
+
+TEST(Symmetry, OfCifIsThatOfItsSpaceGroup) {
+    const TemporaryFolder folder;
+    const auto expect = [&](bool warned, std::string_view text) {
+        SCOPED_TRACE(text);
+        const auto contents = read_file(folder.write("a.cif", text));
+        ASSERT_EQ(contents.warnings.size(), warned ? 1U : 0U);
+        for (const std::string& warning : contents.warnings) {
+            EXPECT_TRUE(warning.starts_with(kNotApplied)) << warning;
+        }
+    };
+    const std::string atoms = crystal("90", "C1 C 0 0 0 .\n");
+    expect(true, atoms);  // nothing is said
+    expect(true, atoms + "_symmetry_space_group_name_H-M 'P 1 21 1'\n");
+    expect(true, atoms + "loop_\n_symmetry_equiv_pos_as_xyz\n'x, y, z'\n'-x, y+1/2, -z'\n");
+    expect(false, atoms + "_space_group_name_H-M_alt 'P 1'\n");
+    expect(false, atoms + "loop_\n_space_group_symop_operation_xyz\n'x, y, z'\n");
+    const auto macromolecule = [](std::string_view residue) {
+        return fmt::format(
+            "data_x\n_symmetry.space_group_name_H-M 'C 2 2 21'\nloop_\n_atom_site.type_symbol\n"
+            "_atom_site.label_comp_id\n_atom_site.Cartn_x\n_atom_site.Cartn_y\n"
+            "_atom_site.Cartn_z\nC {} 1 2 3\n",
+            residue);
+    };
+    expect(true, macromolecule("LIG"));
+    expect(false, macromolecule("GLY"));
+}
+
 TEST(MmcifReader, ReadsALoneAtomWithoutALoop) {
     const TemporaryFolder folder;
     const auto file = folder.write(

@@ -60,9 +60,29 @@ std::string_view optional_value(const std::vector<CifValue>& values, std::size_t
     return row < values.size() ? plain_value(values[row].text) : std::string_view();
 }
 
+/// Unless the file says that the identity is all of it.
+bool has_symmetry(const CifTables& tables) {
+    for (const char* const tag :
+         {"_symmetry_equiv_pos_as_xyz", "_space_group_symop_operation_xyz"}) {
+        if (column(tables, tag).size() == 1) return false;
+    }
+    return true;
+}
+
 constexpr std::array<std::string_view, 2> kFields{"occupancy", "uiso"};
 
 }  // namespace
+
+std::string_view space_group(const CifTables& tables) {
+    for (const char* const tag : {"_symmetry_space_group_name_h-m", "_space_group_name_h-m_alt",
+                                  "_symmetry.space_group_name_h-m", "_space_group.name_h-m_full"}) {
+        const auto& values = column(tables, tag);
+        if (!values.empty() && !plain_value(values[0].text).empty()) {
+            return plain_value(values[0].text);
+        }
+    }
+    return {};
+}
 
 bool is_crystal(const CifTables& tables) { return !column(tables, "_atom_site_fract_x").empty(); }
 
@@ -105,10 +125,8 @@ FileContents read_crystal(const CifTables& tables, const Path& file, const ReadO
         molecule.set_value(0, number(occupancy, 1.0));
         molecule.set_value(1, number(uiso, 0.0));
     }
-    FileContents contents = std::move(molecule).finish(file, "CIF", 1, options);
-    contents.warnings.emplace_back(
-        "Atoms are those of the asymmetric unit; symmetry is not applied.");
-    return contents;
+    if (has_symmetry(tables)) molecule.set_space_group(space_group(tables));
+    return std::move(molecule).finish(file, "CIF", 1, options);
 }
 
 }  // namespace ink

@@ -202,6 +202,9 @@ FileContents AtomTable::finish(const CifTables& tables, const ReadOptions& optio
     for (Assembly& assembly : cif_assemblies(tables, file_)) {
         molecule_.add_assembly(std::move(assembly));
     }
+    if (const std::string_view group = space_group(tables); !group.empty()) {
+        molecule_.set_space_group(group);
+    }
     return std::move(molecule_).finish(file_, "mmCIF", frames_, options);
 }
 
@@ -246,6 +249,7 @@ class CifFile final : public CifVisitor {
   private:
     bool is_kept(const std::string& name) const {
         return !closed_ && (name.starts_with("_atom_site") || name.starts_with("_cell_") ||
+                            name.starts_with("_symmetry") || name.starts_with("_space_group") ||
                             name.starts_with("_pdbx_struct_assembly_gen.") ||
                             name.starts_with("_pdbx_struct_oper_list."));
     }

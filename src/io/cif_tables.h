@@ -31,6 +31,9 @@ std::string_view without_uncertainty(std::string_view number);
 /// cif_assembly.cpp
 std::vector<Assembly> cif_assemblies(const CifTables& tables, const std::filesystem::path& file);
 
+/// The space group that the file names, in full, as "P 1 21 1"; empty where it names none.
+std::string_view space_group(const CifTables& tables);
+
 /// Whether the tables hold a small-molecule crystal, with fractional coordinates.
 bool is_crystal(const CifTables& tables);
 

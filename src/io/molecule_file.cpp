@@ -316,6 +316,20 @@ void MoleculeBuilder::describe(FileContents& contents) const {
     for (const Field& field : molecule_.fields) contents.fields.push_back(summarize(field));
 }
 
+void MoleculeBuilder::warn_about_symmetry(std::vector<std::string>& warnings) const {
+    if (!space_group_) return;
+    std::string name = *space_group_;
+    std::erase(name, ' ');
+    const bool is_polymer = std::ranges::any_of(molecule_.residue_table, [](const Residue& r) {
+        return r.kind == ResidueKind::protein || r.kind == ResidueKind::nucleic;
+    });
+    if (to_lower(name) == "p1" || is_polymer) return;
+    warnings.push_back(
+        fmt::format("Only the atoms of the file are drawn: the symmetry of its crystal{} is not "
+                    "applied.",
+                    name.empty() ? "" : fmt::format(" ({})", *space_group_)));
+}
+
 FileContents MoleculeBuilder::finish(const std::filesystem::path& file, std::string_view format,
                                      int frames, const ReadOptions& options) && {
     if (empty()) throw InputError(file, "holds no atoms; a file with coordinates is needed");
@@ -338,6 +352,7 @@ FileContents MoleculeBuilder::finish(const std::filesystem::path& file, std::str
             fmt::format("{} no known element: drawn in pink with a radius of 1.5 angstrom.",
                         atoms_have(unknown_elements_)));
     }
+    warn_about_symmetry(contents.warnings);
     leave_out_without_radius(options.data, contents.warnings);
     select(options.data);
     if (options.data.assembly.empty()) {

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -63,6 +64,10 @@ class MoleculeBuilder {
     /// Between two atoms, from 0, that have been added.
     void add_bond(std::size_t a, std::size_t b);
 
+    /// The file says that a crystal goes on from its atoms by the symmetry of a space group, as
+    /// "F m -3 m"; empty: by one without a name. A warning tells what is missing, unless it is what
+    /// everybody expects: of proteins and nucleic acids the asymmetric unit is drawn.
+    void set_space_group(std::string_view name) { space_group_ = name; }
     void add_assembly(Assembly assembly) { assemblies_.push_back(std::move(assembly)); }
     void warn(std::string warning) { warnings_.push_back(std::move(warning)); }
 
@@ -81,6 +86,7 @@ class MoleculeBuilder {
     void assemble(const DataSettings& settings);
     void clip(const DataSettings& settings);
     void describe(FileContents& contents) const;
+    void warn_about_symmetry(std::vector<std::string>& warnings) const;
     void describe_names(FileContents& contents) const;
 
     Molecule molecule_;
@@ -90,6 +96,7 @@ class MoleculeBuilder {
     std::vector<Assembly> assemblies_;
     std::vector<std::string> warnings_;
     std::string location_;
+    std::optional<std::string> space_group_;
     bool has_entities_ = false;  ///< the file names them
     std::uint64_t unknown_elements_ = 0;
     std::uint64_t left_out_ = 0;

@@ -241,6 +241,20 @@ class AssemblyRemarks {
     Motion motion_;
 };
 
+/// Of the CRYST1 record, which stands before the atoms; empty where there is none.
+std::string_view space_group(std::string_view text) {
+    constexpr std::size_t kColumn = 55;
+    constexpr std::size_t kWidth = 11;
+    LineCursor lines(text);
+    while (lines.next() && record_of(lines.line()) != Record::atom) {
+        const std::string_view line = lines.line();
+        if (line.starts_with("CRYST1") && line.size() > kColumn) {
+            return trim(line.substr(kColumn, kWidth));
+        }
+    }
+    return {};
+}
+
 FileContents read_pdb(const std::filesystem::path& file, const ReadOptions& options) {
     const std::string text = read_text(file);
     PdbFrame frame;
@@ -253,6 +267,9 @@ FileContents read_pdb(const std::filesystem::path& file, const ReadOptions& opti
     for (const gemmi::Chain& chain : structure.models.front().chains) add_chain(molecule, chain);
     for (Assembly& assembly : AssemblyRemarks(text, file).read()) {
         molecule.add_assembly(std::move(assembly));
+    }
+    if (const std::string_view group = space_group(text); !group.empty()) {
+        molecule.set_space_group(group);
     }
     return std::move(molecule).finish(file, "PDB", frames, options);
 }
