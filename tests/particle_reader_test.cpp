@@ -102,7 +102,7 @@ TEST(Particles, TakeColoursFromAnyFieldOrVector) {
         return spheres(read_file(file, {.data = data})).colors;
     };
     const ColorMap& viridis = *find_color_map("viridis");
-    EXPECT_TRUE(colors({}).empty());
+    EXPECT_TRUE(colors({.color_by = "none"}).empty());
     EXPECT_EQ(colors({.color_by = "vz"})[0], viridis.at(0));
     EXPECT_EQ(colors({.color_by = "vz"})[2], viridis.at(1));
     // Lengths 5, 1 and 3.
@@ -112,6 +112,68 @@ TEST(Particles, TakeColoursFromAnyFieldOrVector) {
     EXPECT_EQ(colors({.color_by = "s[1]", .color_range = std::pair{1.0, 2.0}})[2], viridis.at(1));
     EXPECT_EQ(colors({.color_by = "s"}).size(), 3U);
     expect_refused(file, "--color-by: there is no field 'mass'", {.data = {.color_by = "mass"}});
+}
+
+TEST(Particles, OfSeveralKindsHaveAColourEach) {
+    const TemporaryFolder folder;
+    const auto expect_kinds = [&](std::string_view name, std::string_view text) {
+        SCOPED_TRACE(text);
+        for (const bool facts : {false, true}) {
+            const FileContents contents = read_file(folder.write(name, text), {.facts = facts});
+            EXPECT_EQ(spheres(contents).colors,
+                      (std::vector<Rgb8>{category_color(3), category_color(1), category_color(3)}));
+            ASSERT_EQ(contents.names.size(), 1U);
+            EXPECT_EQ(contents.names[0].first, "types");
+            EXPECT_EQ(contents.names[0].second, (std::vector<std::string>{"1", "3"}));
+            EXPECT_EQ(contents.objects[0].color_scale->title, "type");
+        }
+    };
+    expect_kinds("a.csv", "x,y,z,type\n0,0,0,3\n1,0,0,1\n2,0,0,3\n");
+    expect_kinds(
+        "a.dump",
+        "ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n3\nITEM: BOX BOUNDS pp pp pp\n0 9\n0 9\n"
+        "0 9\nITEM: ATOMS id type x y z\n1 3 0 0 0\n2 1 1 0 0\n3 3 2 0 0\n");
+    expect_kinds("a.xyz", "3\nProperties=type:I:1:pos:R:3\n3 0 0 0\n1 1 0 0\n3 2 0 0\n");
+    expect_kinds("a.vtp",
+                 "<VTKFile type=\"PolyData\"><PolyData><Piece NumberOfPoints=\"3\"><Points>"
+                 "<DataArray type=\"Float32\" NumberOfComponents=\"3\" format=\"ascii\">"
+                 "0 0 0 1 0 0 2 0 0</DataArray></Points><PointData>"
+                 "<DataArray type=\"Int32\" Name=\"type\" format=\"ascii\">3 1 3</DataArray>"
+                 "</PointData></Piece></PolyData></VTKFile>");
+    expect_kinds("a.ply",
+                 "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+                 "property float z\nproperty int type\nend_header\n0 0 0 3\n1 0 0 1\n2 0 0 3\n");
+}
+
+TEST(Particles, HaveOneColourWhereTypesTellNoKindsApart) {
+    const TemporaryFolder folder;
+    for (const std::string_view types : {"1 1", "1 1.5", "1 nan", "sand clay", "1 clay"}) {
+        SCOPED_TRACE(types);
+        const auto file = folder.write("a.txt", fmt::format("x y z type\n0 0 0 {}\n1 0 0 {}\n",
+                                                            types.substr(0, types.find(' ')),
+                                                            types.substr(types.find(' ') + 1)));
+        EXPECT_TRUE(spheres(read_file(file)).colors.empty());
+        EXPECT_TRUE(spheres(read_file(file, {.facts = true})).colors.empty());
+    }
+    std::string names = "x,y,z,type\n";
+    for (int k = 0; k < 100; ++k) names += fmt::format("{},0,0,{}\n", k, k);
+    EXPECT_TRUE(spheres(read_file(folder.write("b.csv", names))).colors.empty());
+    // Words are refused where numbers are asked for.
+    expect_refused(folder.write("c.csv", "x,y,z,type\n0,0,0,sand\n"), "column 'type' is 'sand'",
+                   {.data = {.color_by = "type"}});
+}
+
+TEST(Particles, OfAnExtendedXyzWithoutElementsAreThoseOfATable) {
+    const TemporaryFolder folder;
+    const auto file = folder.write(
+        "a.xyz", "2\nProperties=id:I:1:pos:R:3:name:S:1:v:R:3\n1 0 0 0 a 3 4 0\n2 0 0 5 b 0 0 1\n");
+    const FileContents contents = read_file(file, {.data = {.color_by = "v"}});
+    EXPECT_EQ(contents.objects[0].kind, ObjectKind::particles);
+    EXPECT_EQ(positions(contents), (std::vector<Vec3d>{{0, 0, 0}, {0, 0, 5}}));
+    EXPECT_EQ(radii(contents), (std::vector<float>{2.5F, 2.5F}));  // they touch
+    EXPECT_EQ(spheres(contents).colors[0], find_color_map("viridis")->at(1));
+    expect_refused(folder.write("b.xyz", "1\nProperties=id:I:1:pos:R:3\n1 0 0\n"),
+                   ":3: the row has 3 of 4 columns");
 }
 
 TEST(Particles, TakeRadiiFromAFieldANumberOrTheirNeighbours) {

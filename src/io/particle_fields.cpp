@@ -9,6 +9,7 @@
 
 #include "base/text.h"
 #include "io/file_text.h"
+#include "scene/kind_colors.h"
 #include "scene/particle_glyphs.h"
 #include "scene/particles.h"
 
@@ -55,6 +56,8 @@ class FieldFinder {
         return true;
     }
 
+    /// Values of what is requested from now on may be missing.
+    void end_needed() { layout_.needed = layout_.fields.size(); }
     FieldLayout take() { return std::move(layout_); }
 
   private:
@@ -141,12 +144,19 @@ FieldLayout lay_out_fields(const std::vector<std::string>& columns, const DataSe
             finder.request_vector(std::string(name));
         }
     }
+    finder.end_needed();
+    if (settings.color_by.empty()) {
+        for (const std::string& column : columns) {
+            if (is_kind_name(column)) finder.request(column);
+        }
+    }
     for (const std::string& name : others) finder.request(name);
     return finder.take();
 }
 
 bool is_drawn_field(std::string_view name, const DataSettings& settings) {
     if (settings.radius.empty() && is_size_name(name)) return true;
+    if (settings.color_by.empty() && is_kind_name(name)) return true;
     if (settings.glyph != Glyph::sphere &&
         std::ranges::find(glyph_field_names(), to_lower(name)) != glyph_field_names().end()) {
         return true;

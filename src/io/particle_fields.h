@@ -16,11 +16,12 @@ struct FieldLayout {
         std::size_t field, component;
     };
     std::vector<Field> fields;                  ///< empty yet
+    std::size_t needed = 0;                     ///< of `fields`: others may lack values
     std::vector<std::vector<Place>> of_column;  ///< one list a column; empty: not drawn
 };
 
-/// The fields that the settings ask for, and those of radii and glyphs that go by their usual
-/// names. A field is a column, or the columns of a vector (vx vy vz), a tensor (F11 ... F33,
+/// The fields that the settings ask for, and those of radii, glyphs and kinds that go by their
+/// usual names. A field is a column, or the columns of a vector (vx vy vz), a tensor (F11 ... F33,
 /// sxx syy szz sxy syz sxz) or a quaternion (quatw quati quatj quatk; w comes first). `others` are
 /// wanted beside them.
 FieldLayout lay_out_fields(const std::vector<std::string>& columns, const DataSettings& settings,

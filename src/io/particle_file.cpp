@@ -7,6 +7,7 @@
 #include <charconv>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include "base/error.h"
@@ -83,13 +84,20 @@ FileContents particle_contents(const std::filesystem::path& file, std::string_vi
     contents.counts.emplace(contents.counts.begin(), "particles", particles.count());
     contents.objects =
         represent(std::move(particles), options.data, contents.warnings, options.facts);
+    const std::optional<ColorScale>& scale = contents.objects.front().color_scale;
+    if (options.data.color_by.empty() && scale) {
+        std::vector<std::string> kinds;
+        for (const ColorScale::Entry& entry : scale->entries) kinds.push_back(entry.name);
+        contents.names.emplace_back(scale->title + "s", std::move(kinds));
+    }
     return contents;
 }
 
 ParticleColumns::ParticleColumns(const std::filesystem::path& file,
                                  const std::vector<std::string>& names, const ReadOptions& options)
     : summarize_(options.summarize) {
-    for (const std::string& name : names) columns_.push_back({name, false, -1, {}, kMax, -kMax});
+    for (const std::string& name : names)
+        columns_.push_back({name, false, false, -1, {}, kMax, -kMax});
     find_axes(file);
     std::vector<std::string> others;
     for (const Column& column : columns_) {
@@ -98,11 +106,13 @@ ParticleColumns::ParticleColumns(const std::filesystem::path& file,
     FieldLayout layout = lay_out_fields(names, options.data, others);
     particles_.fields = std::move(layout.fields);
     for (std::size_t c = 0; c < columns_.size(); ++c) {
-        columns_[c].destinations = std::move(layout.of_column[c]);
-    }
-    for (std::size_t c = 0; c < columns_.size(); ++c) {
         Column& column = columns_[c];
+        column.destinations = std::move(layout.of_column[c]);
         column.needed = summarize_ || column.axis >= 0 || !column.destinations.empty();
+        column.is_number = column.axis >= 0 ||
+                           std::ranges::any_of(column.destinations, [&](FieldLayout::Place place) {
+                               return place.field < layout.needed;
+                           });
         if (column.needed) last_needed_ = c;
     }
 }
@@ -148,10 +158,12 @@ bool ParticleColumns::add_row(std::string_view row, char separator, std::string&
         if (!column.needed) continue;
         double value = 0.0;
         if (!parse_float(word, value)) {
-            // A column that is only looked at may hold words.
-            if (column.axis < 0 && column.destinations.empty()) continue;
-            problem = fmt::format("column '{}' is {}, not a number", column.name, excerpt(word));
-            return false;
+            if (column.is_number) {
+                problem =
+                    fmt::format("column '{}' is {}, not a number", column.name, excerpt(word));
+                return false;
+            }
+            value = std::numeric_limits<double>::quiet_NaN();
         }
         if (column.axis >= 0) position[static_cast<std::size_t>(column.axis)] = value;
         for (const FieldLayout::Place place : column.destinations) {

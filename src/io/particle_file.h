@@ -40,7 +40,8 @@ class ParticleColumns {
     struct Column {
         std::string name;
         bool needed = false;
-        int axis = -1;  ///< 0, 1, 2: a coordinate
+        bool is_number = false;  ///< in every row; else words have no value
+        int axis = -1;           ///< 0, 1, 2: a coordinate
         std::vector<FieldLayout::Place> destinations;
         double least, most;  ///< of the finite values
     };

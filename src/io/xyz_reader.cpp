@@ -11,6 +11,7 @@
 #include "io/file_text.h"
 #include "io/formats.h"
 #include "io/molecule_file.h"
+#include "io/particle_file.h"
 #include "scene/elements.h"
 
 namespace ink {
@@ -26,11 +27,12 @@ struct Quantity {
 
 /// Where a row keeps what is drawn. The default is plain XYZ: symbol x y z.
 struct Columns {
-    std::optional<std::size_t> species = 0;
-    std::size_t position = 1;  ///< of x; y and z follow
-    std::size_t count = 4;     ///< that every row must have at least
+    std::optional<std::size_t> species = 0;  ///< none: rows are particles, not atoms
+    std::size_t position = 1;                ///< of x; y and z follow
+    std::size_t count = 4;                   ///< that every row must have at least
     std::optional<std::size_t> radius = std::nullopt;
     std::vector<Quantity> quantities = {};
+    std::vector<std::string> names = {};  ///< a column each, of extended XYZ
 };
 
 /// One frame as it lies in the text, not looked into yet.
@@ -76,6 +78,17 @@ std::optional<std::string_view> properties(std::string_view comment) {
     return take_word(value);
 }
 
+/// Of the columns of a property: as in tables, for particles.
+void add_names(std::string_view property, std::size_t width, std::vector<std::string>& names) {
+    for (std::size_t k = 0; k < width; ++k) {
+        if (to_lower(property) == "pos") {
+            names.emplace_back(1, "xyz"[std::min<std::size_t>(k, 2)]);
+        } else {
+            names.push_back(width == 1 ? std::string(property) : fmt::format("{}:{}", property, k));
+        }
+    }
+}
+
 /// Reads "species:S:1:pos:R:3:...".
 Columns parse_columns(std::string_view text, FilePlace place) {
     constexpr std::int64_t kMostColumns = 1000;
@@ -94,6 +107,7 @@ Columns parse_columns(std::string_view text, FilePlace place) {
         const std::string name = to_lower(fields[i]);
         const std::int64_t width = parse_int(fields[i + 2]).value_or(0);
         check(width >= 1 && width <= kMostColumns, "a wrong number of columns");
+        add_names(fields[i], static_cast<std::size_t>(width), columns.names);
         if (name == "species" || (name == "z" && !columns.species)) columns.species = columns.count;
         if (name == "pos") {
             check(width == 3, "a position without three columns");
@@ -142,6 +156,7 @@ double parse_number(std::string_view word, std::string_view what, FilePlace plac
 
 class RowReader {
   public:
+    /// The columns have species.
     RowReader(MoleculeBuilder& molecule, const Columns& columns)
         : molecule_(molecule), columns_(columns) {
         words_.resize(columns.count);
@@ -159,8 +174,7 @@ class RowReader {
                                          "atoms than its count line says?",
                                          column, columns_.count));
         }
-        const std::uint8_t element =
-            columns_.species ? parse_element(words_[*columns_.species], place) : std::uint8_t{0};
+        const std::uint8_t element = parse_element(words_[*columns_.species], place);
         const std::size_t x = columns_.position;
         molecule_.add_atom(parse_position(words_[x], words_[x + 1], words_[x + 2], place), element);
         add_radius(place);
@@ -239,14 +253,37 @@ Frames find_frames(std::string_view text, int wanted, const std::filesystem::pat
     return frames;
 }
 
+constexpr std::string_view kCutFrame = "The last frame is cut short and was left out.";
+
+/// What has no elements is no molecule.
+FileContents read_particles(const Frames& frames, const Columns& columns,
+                            const std::filesystem::path& file, const ReadOptions& options) {
+    ParticleColumns particles(file, columns.names, options);
+    LineCursor rows(frames.wanted.rows);
+    std::string problem;
+    while (rows.next()) {
+        if (particles.add_row(rows.line(), ' ', problem)) continue;
+        throw InputError(
+            file, frames.wanted.count_line + 1 + rows.number(),
+            fmt::format("{}; does the frame have fewer atoms than its count line says?", problem));
+    }
+    FileContents contents;
+    contents.frames = frames.count;
+    contents.fields = particles.summaries();
+    if (frames.last_is_cut) contents.warnings.emplace_back(kCutFrame);
+    return particle_contents(file, "XYZ", std::move(particles.particles()), std::move(contents),
+                             options);
+}
+
 FileContents read_xyz(const std::filesystem::path& file, const ReadOptions& options) {
     const std::string text = read_text(file);
     const Frames frames = find_frames(text, options.frame, file);
     if (frames.count > 0) check_frame(options.frame, frames.count, file);
-    MoleculeBuilder molecule;
     const Columns columns = frame_columns(frames.wanted, file);
+    if (!columns.species) return read_particles(frames, columns, file, options);
+    MoleculeBuilder molecule;
     add_atoms(molecule, frames.wanted, columns, file);
-    if (frames.last_is_cut) molecule.warn("The last frame is cut short and was left out.");
+    if (frames.last_is_cut) molecule.warn(std::string(kCutFrame));
     return std::move(molecule).finish(file, "XYZ", frames.count, options);
 }
 

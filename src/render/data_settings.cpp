@@ -220,7 +220,8 @@ std::vector<Setting> data_settings_rows() {
         {"color-by", "Input", "WHAT",
          "element, chain, chain-hetero (carbons by chain, others by element), residue, entity, "
          "rainbow (along each chain), none, a colour, or a field such as bfactor or velocity.x; by "
-         "default element, of more than 10000 atoms in several chains chain",
+         "default element, of more than 10000 atoms in several chains chain, of particles the "
+         "file's colours, else the type where there are several",
          [](S& s, Text t) { s.data.color_by = t; }, [](const S& s) { return s.data.color_by; },
          false,
          any_text({"element", "chain", "chain-hetero", "residue", "entity", "rainbow", "none"})},

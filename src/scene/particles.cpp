@@ -16,6 +16,7 @@
 #include "base/parallel.h"
 #include "base/text.h"
 #include "scene/color_scale.h"
+#include "scene/kind_colors.h"
 #include "scene/particle_glyphs.h"
 #include "scene/representation.h"
 
@@ -195,16 +196,22 @@ void keep_only(const std::vector<std::uint8_t>& keep, std::vector<T>& values) {
 
 std::vector<Rgb8> particle_colors(Particles& particles, const DataSettings& settings,
                                   Object& object) {
-    if (settings.color_by.empty()) return std::move(particles.colors);
+    const auto take = [&](Coloring coloring) {
+        object.color_scale = std::move(coloring.scale);
+        return std::move(coloring.colors);
+    };
+    if (settings.color_by.empty()) {
+        if (!particles.colors.empty()) return std::move(particles.colors);
+        auto kinds = color_kinds(particles.fields);
+        return kinds ? take(std::move(*kinds)) : std::vector<Rgb8>();
+    }
     if (settings.color_by == "none") return {};
     if (const auto color = parse_color(settings.color_by)) {
         object.material.color = *color;
         return {};
     }
-    Coloring coloring = color_field(
-        settings.color_by, field_values(particles, "color-by", settings.color_by), settings);
-    object.color_scale = std::move(coloring.scale);
-    return std::move(coloring.colors);
+    return take(color_field(settings.color_by,
+                            field_values(particles, "color-by", settings.color_by), settings));
 }
 
 Spheres make_spheres(const Particles& particles, const Radii& radii) {

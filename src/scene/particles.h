@@ -27,8 +27,8 @@ struct Particles {
 bool is_radius_name(std::string_view name);
 bool is_diameter_name(std::string_view name);
 
-/// The names of fields that the settings ask for; radii and glyphs that go by their usual names
-/// are wanted beside them.
+/// The names of fields that the settings ask for; radii, glyphs and kinds that go by their usual
+/// names are wanted beside them.
 std::vector<std::string> requested_fields(const DataSettings& settings);
 
 /// Half the usual distance from a particle to its nearest neighbour: the radius at which particles
