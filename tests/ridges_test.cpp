@@ -392,6 +392,57 @@ TEST(Ridges, BesideALineThatIsDrawnAnywayAreLeftOut) {
     EXPECT_NE(ridges, render(scene, *tracer, settings).display().pixels) << "there is none";
 }
 
+/// A roof with a crease along its top, one side of which bends down smoothly, `bend_at` below it.
+Object bent_roof(double bend_at) {
+    constexpr double kSlope = 0.4;
+    constexpr int kSteps = 4;
+    std::vector<Vec2d> profile{{1, -kSlope}, {0, 0}};
+    Vec2d at{-bend_at, -kSlope * bend_at};
+    profile.push_back(at);
+    for (int k = 1; k <= kSteps; ++k) {
+        const double angle = std::atan(kSlope) + 0.5 * k / kSteps;
+        at = at + Vec2d{-0.015, -0.015 * std::tan(angle)};
+        profile.push_back(at);
+    }
+    profile.push_back(at + Vec2d{-1, -std::tan(std::atan(kSlope) + 0.5)});
+    std::vector<Vec3f> vertices;
+    std::vector<Mesh::Triangle> triangles;
+    for (const Vec2d p : profile) {
+        const auto k = static_cast<std::uint32_t>(vertices.size());
+        for (const double x : {-3.0, 3.0}) vertices.push_back(to_float(Vec3d{x, p.x, p.y}));
+        if (k == 0) continue;
+        triangles.push_back({k - 2, k, k + 1});
+        triangles.push_back({k - 2, k + 1, k - 1});
+    }
+    Object roof = mesh_object(std::move(vertices), std::move(triangles));
+    smooth_normals(std::get<Mesh>(roof.shape), {});
+    return roof;
+}
+
+TEST(Ridges, AlongALineWithinTheirNeighbourhoodAreLeftOut) {
+    constexpr double kPixel = 0.01;
+    Settings settings;
+    settings.size = {200, 200};
+    settings.view.view = View::front;
+    settings.view.eye = Vec3d{0, 0, 10};
+    settings.view.look_at = Vec3d{0, 0, 0};
+    settings.view.orthographic = 200 * kPixel;
+    settings.ridge_scale = {6.0, Length::Unit::px};
+    settings.ridge_turn_deg = 1.0;
+    const auto has_ridge = [&](double distance_px) {
+        const Scene scene({bent_roof(distance_px * kPixel)});
+        const auto tracer = make_tracer(scene);
+        settings.lines = {};
+        settings.lines.add(LineType::crease);
+        const Pixels creases = render(scene, *tracer, settings).display().pixels;
+        settings.lines.add(LineType::ridge);
+        return render(scene, *tracer, settings).display().pixels != creases;
+    };
+    EXPECT_TRUE(has_ridge(30));
+    EXPECT_TRUE(has_ridge(12));
+    EXPECT_FALSE(has_ridge(6));
+}
+
 // A plane z = 0 with a step in it, and a hole.
 RidgeGrid stepped_plane(int width, int height, int step_at, int hole_x, int hole_y) {
     RidgeGrid grid(width, height, {}, 1.0F);
@@ -482,8 +533,10 @@ TEST(ShortRidges, AreThoseWhosePiecesInAllAreShorter) {
         piece(1.5F, across(5, 3), down(6, 3))};
     const auto kept = [&](float least) {
         std::vector<RidgePiece> pieces = all;
-        drop_short_ridges(pieces, kWidth, least);
         std::vector<float> lengths;
+        for (const RidgePiece& each : pieces) lengths.push_back(length(each.b - each.a));
+        drop_short_ridges(pieces, lengths, kWidth, least);
+        lengths.clear();
         for (const RidgePiece& left : pieces) lengths.push_back(length(left.b - left.a));
         return lengths;
     };
@@ -491,6 +544,13 @@ TEST(ShortRidges, AreThoseWhosePiecesInAllAreShorter) {
     EXPECT_EQ(kept(5.4F), (std::vector{2.0F, 2.5F, 5.5F, 1.5F}));
     EXPECT_EQ(kept(5.9F), (std::vector{2.0F, 2.5F, 1.5F}));
     EXPECT_TRUE(kept(6.1F).empty());
+    // Of pieces that do not count the ridge is no longer, but they stay with it.
+    std::vector<RidgePiece> pieces = all;
+    drop_short_ridges(pieces, std::vector{2.0F, 0.0F, 5.5F, 2.0F, 1.5F}, kWidth, 3.4F);
+    EXPECT_EQ(pieces.size(), 4U);
+    pieces = all;
+    drop_short_ridges(pieces, std::vector{2.0F, 0.0F, 5.5F, 2.0F, 1.5F}, kWidth, 3.6F);
+    EXPECT_EQ(pieces.size(), 1U);
 }
 
 TEST(LineMask, CoversThePixelsWithinReach) {

@@ -50,20 +50,19 @@ class Groups {
 
 }  // namespace
 
-void drop_short_ridges(std::vector<RidgePiece>& pieces, int width, float least) {
+void drop_short_ridges(std::vector<RidgePiece>& pieces, std::span<const float> lengths, int width,
+                       float least) {
     const auto count = static_cast<std::uint32_t>(pieces.size());
     EdgeTable table(width);
     Groups groups(count);
     for (std::uint32_t k = 0; k < count; ++k) {
         for (const std::size_t edge : pieces[k].edges) groups.join(k, table.first(edge, k));
     }
-    std::vector<float> lengths(count, 0.0F);
-    for (std::uint32_t k = 0; k < count; ++k) {
-        lengths[groups.root(k)] += length(pieces[k].b - pieces[k].a);
-    }
+    std::vector<float> sums(count, 0.0F);
+    for (std::uint32_t k = 0; k < count; ++k) sums[groups.root(k)] += lengths[k];
     std::uint32_t kept = 0;
     for (std::uint32_t k = 0; k < count; ++k) {
-        if (lengths[groups.root(k)] >= least) pieces[kept++] = pieces[k];
+        if (sums[groups.root(k)] >= least) pieces[kept++] = pieces[k];
     }
     pieces.resize(kept);
 }

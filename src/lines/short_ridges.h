@@ -1,13 +1,16 @@
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "lines/ridge_field.h"
 
 namespace ink {
 
-/// Drops ridges whose pieces that hang together are shorter in all than `least` pixels. Pieces
-/// come, and stay, row by row and from left to right, of a grid with rows of `width` nodes.
-void drop_short_ridges(std::vector<RidgePiece>& pieces, int width, float least);
+/// Drops ridges whose pieces that hang together are shorter in all than `least` pixels, by the
+/// `lengths` that count of each. Pieces come, and stay, row by row and from left to right, of a
+/// grid with rows of `width` nodes.
+void drop_short_ridges(std::vector<RidgePiece>& pieces, std::span<const float> lengths, int width,
+                       float least);
 
 }  // namespace ink

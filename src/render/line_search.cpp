@@ -8,13 +8,14 @@ namespace ink {
 namespace {
 
 /// Where there are lines on surfaces seen directly, but not between faces, so near that a ridge
-/// beside them would touch them.
-LineMask mask_of(const Edges& edges, const std::vector<TileLines>& found) {
+/// beside them would touch them, or `more` pixels farther away.
+LineMask mask_of(const Edges& edges, const std::vector<TileLines>& found, float more) {
     LineMask mask(edges.search_area());
     const auto mark = [&](Vec2f a, Vec2f b, std::size_t style) {
         constexpr float kBetween = 0.5F;  // what the eye does not tell from none, pixels
         const float ridge = edges.ink.styles[edges.style_of(LineType::ridge, 0)].width_px;
-        mask.mark((a + b) * 0.5F, 0.5F * (edges.ink.styles[style].width_px + ridge) + kBetween);
+        const float touching = 0.5F * (edges.ink.styles[style].width_px + ridge) + kBetween;
+        mask.mark((a + b) * 0.5F, touching + more);
     };
     for (const TileLines& tile : found) {
         for (const Segment& segment : tile.segments) {
@@ -194,7 +195,9 @@ LineDensity LineSearch::take_ridges() {
     double ms = 0.0;
     {
         const Timer timer(ms);
-        ridges_->take(mask_of(edges_, found_.tiles), [&](Segment& ridge) {
+        const LineMask touching = mask_of(edges_, found_.tiles, 0.0F);
+        const LineMask near = mask_of(edges_, found_.tiles, ridges_->radius_px());
+        ridges_->take(touching, near, [&](Segment& ridge) {
             if (edges_.tempers_lines()) edges_.temper(ridge);
             const InkStroke stroke = make_ink_stroke(ridge, edges_.style_of(ridge));
             density.add(stroke, edges_.ink.styles[stroke.style].width_px * stroke.width_scale);

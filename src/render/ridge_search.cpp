@@ -83,8 +83,9 @@ RidgeSearch::RidgeSearch(const Pipeline& pipeline, const Viewpoint& viewpoint, i
     : pipeline_(pipeline),
       viewpoint_(viewpoint),
       per_pixel_(per_pixel),
-      step_(step_of(radius_of(pipeline, per_pixel), per_pixel)),
-      pattern_(std::clamp((radius_of(pipeline, per_pixel) + step_ / 2) / step_, 2, 48),
+      radius_(radius_of(pipeline, per_pixel)),
+      step_(step_of(radius_, per_pixel)),
+      pattern_(std::clamp((radius_ + step_ / 2) / step_, 2, 48),
                static_cast<float>(step_) / static_cast<float>(per_pixel)),
       apron_(static_cast<int>(pattern_.half_widths().size()) - 1),
       x0_(floor_of(area.x0 * per_pixel, step_) - apron_),
@@ -222,19 +223,22 @@ RenderStats RidgeSearch::stats() const {
     return total;
 }
 
-std::vector<RidgePiece> RidgeSearch::pieces_beside(const LineMask& others) {
+std::vector<RidgePiece> RidgeSearch::pieces_beside(const LineMask& touching, const LineMask& near) {
     std::size_t most = 0;
     for (const std::vector<RidgePiece>& band : found_) most += band.size();
     std::vector<RidgePiece> pieces;
+    std::vector<float> lengths;
     pieces.reserve(most);
+    lengths.reserve(most);
     for (const std::vector<RidgePiece>& band : found_) {
         for (const RidgePiece& piece : band) {
-            if (!others.covers((piece.a + piece.b) * 0.5F)) pieces.push_back(piece);
+            const Vec2f middle = (piece.a + piece.b) * 0.5F;
+            if (touching.covers(middle)) continue;
+            pieces.push_back(piece);
+            lengths.push_back(near.covers(middle) ? 0.0F : length(piece.b - piece.a));
         }
     }
-    drop_short_ridges(
-        pieces, grid_.width,
-        static_cast<float>(radius_of(pipeline_, per_pixel_)) / static_cast<float>(per_pixel_));
+    drop_short_ridges(pieces, lengths, grid_.width, radius_px());
     return pieces;
 }
 

@@ -49,12 +49,16 @@ class RidgeSearch {
     std::size_t bands() const { return found_.size(); }
     void search_band(std::size_t band, std::size_t thread);
 
+    /// Of a ridge's neighbourhood, pixels.
+    float radius_px() const { return static_cast<float>(radius_) / static_cast<float>(per_pixel_); }
+
     /// Calls `visit` with what was found, but for pieces so near to other lines that they would
-    /// touch them, and for what is shorter in all than the neighbourhood's radius: more often than
-    /// not it is noise of a mesh.
+    /// touch them (`touching`), and for what is shorter in all than the neighbourhood's radius:
+    /// more often than not it is noise of a mesh. What other lines are as near to as that (`near`)
+    /// does not count: the normals there turn because of the edge that the other line runs along.
     template <class Visit>
-    void take(const LineMask& others, const Visit& visit) {
-        for (const RidgePiece& piece : pieces_beside(others)) {
+    void take(const LineMask& touching, const LineMask& near, const Visit& visit) {
+        for (const RidgePiece& piece : pieces_beside(touching, near)) {
             Segment segment = segment_of(piece);
             visit(segment);
         }
@@ -69,7 +73,7 @@ class RidgeSearch {
     /// Nodes [x0, x1) x [y0, y1) of the grid.
     using Nodes = Tile;
 
-    std::vector<RidgePiece> pieces_beside(const LineMask& others);
+    std::vector<RidgePiece> pieces_beside(const LineMask& touching, const LineMask& near);
     Segment segment_of(const RidgePiece& piece) const;
     Nodes nodes_of(const Tile& pixels) const;
     int rows_of_cells() const;
