@@ -86,10 +86,10 @@ void measure_front(const Front& front, const ScreenPacket* packets, const Packet
         auto distance = set(kInfinity);
         auto nx = set(1.0F);  // any unit vector will do where there is no side
         auto ny = hn::Zero(kFloats);
-        for (LaneBits left = bits(hit); left != 0;) {
+        for (LaneBits left = bits_of(hit); left != 0;) {
             const std::uint32_t winner = front.winner[i + std::countr_zero(left)];
-            const auto own = hn::RebindMask(kFloats, hn::Eq(winners, hn::Set(kIndices, winner)));
-            left &= ~bits(own);
+            const auto own = hn::RebindMask(kFloats, hn::Eq(winners, hn::Set(kWords, winner)));
+            left &= ~bits_of(own);
             const ScreenPacket& packet = packets[winner / kLanes];
             if (packet.kind != ClusterKind::triangles) continue;
             const std::size_t lane = winner % kLanes;
@@ -108,9 +108,9 @@ void measure_front(const Front& front, const ScreenPacket* packets, const Packet
             }
         }
         // A point that is inside may be outside by rounding.
-        hn::Store(hn::Max(distance, hn::Zero(kFloats)), kFloats, borders.distance.data() + i);
-        hn::Store(nx, kFloats, borders.nx.data() + i);
-        hn::Store(ny, kFloats, borders.ny.data() + i);
+        store(hn::Max(distance, hn::Zero(kFloats)), borders.distance, i);
+        store(nx, borders.nx, i);
+        store(ny, borders.ny, i);
     }
 }
 

@@ -17,15 +17,15 @@ namespace ink::HWY_NAMESPACE {
 /// winners, each of which would wait until what the one before wrote can be read.
 struct Found {
     Vectors normal;
-    Vector u, v;
-    hn::Vec<Indices> object, primitive;
+    Number u, v;
+    Word object, primitive;
 
     HWY_INLINE Found()
         : normal{hn::Zero(kFloats), hn::Zero(kFloats), hn::Zero(kFloats)},
           u(hn::Zero(kFloats)),
           v(hn::Zero(kFloats)),
-          object(hn::Set(kIndices, kNoObject)),
-          primitive(hn::Set(kIndices, kNoObject)) {}
+          object(hn::Set(kWords, kNoObject)),
+          primitive(hn::Set(kWords, kNoObject)) {}
 
     HWY_INLINE void put_normal(Mask lanes, const Vectors& n) {
         normal.x = hn::IfThenElse(lanes, n.x, normal.x);
@@ -33,14 +33,14 @@ struct Found {
         normal.z = hn::IfThenElse(lanes, n.z, normal.z);
     }
 
-    HWY_INLINE void store(int i, HitPacket& hits) const {
-        hn::Store(normal.x, kFloats, hits.normal_x.data() + i);
-        hn::Store(normal.y, kFloats, hits.normal_y.data() + i);
-        hn::Store(normal.z, kFloats, hits.normal_z.data() + i);
-        hn::Store(u, kFloats, hits.u.data() + i);
-        hn::Store(v, kFloats, hits.v.data() + i);
-        hn::Store(object, kIndices, hits.object.data() + i);
-        hn::Store(primitive, kIndices, hits.primitive.data() + i);
+    HWY_INLINE void put(int i, HitPacket& hits) const {
+        store(normal.x, hits.normal_x, i);
+        store(normal.y, hits.normal_y, i);
+        store(normal.z, hits.normal_z, i);
+        store(u, hits.u, i);
+        store(v, hits.v, i);
+        store(object, hits.object, i);
+        store(primitive, hits.primitive, i);
     }
 };
 
@@ -50,10 +50,10 @@ HWY_INLINE Vectors vectors(const HitNumbers& hit, std::size_t first) {
 
 /// The hits of a sphere or triangle, from their place in the scene.
 HWY_INLINE void resolve_placed(const ScreenPacket& packet, const HitNumbers& hit,
-                               const RayPacket& rays, int i, Vector t, Mask lanes, Found& found) {
+                               const RayPacket& rays, int i, Number t, Mask lanes, Found& found) {
     if (packet.kind == ClusterKind::solids) return found.put_normal(lanes, vectors(hit, 3));
     const Vectors from = vectors(hit, 0);
-    const auto at = [&](const Lanes<float>& origin, const Lanes<float>& dir, Vector from_origin) {
+    const auto at = [&](const Lanes<float>& origin, const Lanes<float>& dir, Number from_origin) {
         return hn::Sub(hn::Add(load(origin, i), hn::Mul(t, load(dir, i))), from_origin);
     };
     const Vectors p{at(rays.origin_x, rays.dir_x, from.x), at(rays.origin_y, rays.dir_y, from.y),
@@ -111,7 +111,7 @@ HWY_INLINE void resolve_glyph(const ScreenPacket& packet, int lane, const Front&
     const Vectors x = vectors(hit, 0);
     const Vectors y = vectors(hit, 3);
     const Vectors z = vectors(hit, 6);
-    const auto turned = [&](Vector a, Vector b, Vector c) {
+    const auto turned = [&](Number a, Number b, Number c) {
         return hn::Add(hn::Add(hn::Mul(a, n.x), hn::Mul(b, n.y)), hn::Mul(c, n.z));
     };
     found.put_normal(lanes, {turned(x.x, y.x, z.x), turned(x.y, y.y, z.y), turned(x.z, y.z, z.z)});
@@ -119,17 +119,16 @@ HWY_INLINE void resolve_glyph(const ScreenPacket& packet, int lane, const Front&
 
 /// The lanes of a hit packet, from the i-th on, that one primitive won.
 HWY_INLINE void resolve_winner(const ScreenPacket& packet, int lane, const Front& front,
-                               const RayPacket& rays, int i, Vector t, Mask lanes, Found& found) {
+                               const RayPacket& rays, int i, Number t, Mask lanes, Found& found) {
     if (packet.kind == ClusterKind::glyphs) {
         resolve_glyph(packet, lane, front, i, lanes, found);
     } else {
         const HitNumbers& hit = packet.hit[static_cast<std::size_t>(lane)];
         resolve_placed(packet, hit, rays, i, t, lanes, found);
     }
-    const auto own = hn::RebindMask(kIndices, lanes);
-    found.object = hn::IfThenElse(own, hn::Set(kIndices, packet.object), found.object);
-    found.primitive =
-        hn::IfThenElse(own, hn::Set(kIndices, packet.primitive[lane]), found.primitive);
+    const auto own = hn::RebindMask(kWords, lanes);
+    found.object = hn::IfThenElse(own, hn::Set(kWords, packet.object), found.object);
+    found.primitive = hn::IfThenElse(own, hn::Set(kWords, packet.primitive[lane]), found.primitive);
 }
 
 void resolve_front(const Front& front, const RayPacket& rays, const ScreenPacket* packets,
@@ -139,17 +138,17 @@ void resolve_front(const Front& front, const RayPacket& rays, const ScreenPacket
         const auto hit = hn::And(hn::Lt(depth, set(kInfinity)), hn::Gt(depth, set(-kInfinity)));
         // Rays start where depth is 0.
         const auto t = hn::Div(depth, hn::Sqrt(load(front.foreshortening, i)));
-        hn::Store(hn::IfThenElse(hit, t, set(kInfinity)), kFloats, hits.t.data() + i);
+        store(hn::IfThenElse(hit, t, set(kInfinity)), hits.t, i);
         const auto winners = load(front.winner, i);
         Found found;
-        for (LaneBits left = bits(hit); left != 0;) {
+        for (LaneBits left = bits_of(hit); left != 0;) {
             const std::uint32_t winner = front.winner[i + std::countr_zero(left)];
-            const auto won = hn::RebindMask(kFloats, hn::Eq(winners, hn::Set(kIndices, winner)));
-            left &= ~bits(won);
+            const auto won = hn::RebindMask(kFloats, hn::Eq(winners, hn::Set(kWords, winner)));
+            left &= ~bits_of(won);
             resolve_winner(packets[winner / kLanes], static_cast<int>(winner % kLanes), front, rays,
                            i, t, hn::And(won, hit), found);
         }
-        found.store(i, hits);
+        found.put(i, hits);
     }
 }
 
@@ -158,9 +157,9 @@ void identify_front(const Front& front, const ScreenPacket* packets, HitPacket& 
     for (int i = 0; i < kLanes; i += kStep) {
         const auto depth = load(front.depth, i);
         const auto hit = hn::And(hn::Lt(depth, set(kInfinity)), hn::Gt(depth, set(-kInfinity)));
-        hit_lanes |= bits(hit) << static_cast<unsigned>(i);
+        hit_lanes |= bits_of(hit) << static_cast<unsigned>(i);
         const auto t = hn::Div(depth, hn::Sqrt(load(front.foreshortening, i)));
-        hn::Store(hn::IfThenElse(hit, t, set(kInfinity)), kFloats, hits.t.data() + i);
+        store(hn::IfThenElse(hit, t, set(kInfinity)), hits.t, i);
     }
     for (int i = 0; i < kLanes; ++i) {
         const bool hit = (hit_lanes >> static_cast<unsigned>(i) & 1U) != 0;

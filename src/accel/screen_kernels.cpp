@@ -38,7 +38,7 @@ HWY_INLINE LaneBits overlap_lanes(const BoundsPacket& bounds, const Window& wind
         const auto down = hn::And(hn::Le(load(bounds.top, i), set(window.bottom)),
                                   hn::Ge(load(bounds.bottom, i), set(window.top)));
         const auto near = hn::Lt(load(bounds.depth, i), set(window.farthest));
-        all |= bits(hn::And(hn::And(across, down), near)) << static_cast<unsigned>(i);
+        all |= bits_of(hn::And(hn::And(across, down), near)) << static_cast<unsigned>(i);
     }
     return all;
 }
@@ -143,7 +143,7 @@ struct CellRanges {
             for (int i = 0; i < kLanes; i += kStep) {
                 const auto place = hn::Mul(hn::Sub(load(at, i), set(from)), set(scale));
                 const auto within = hn::Min(hn::Max(place, hn::Zero(kFloats)), last);
-                hn::Store(hn::ConvertTo(kIntegers, within), kIntegers, to.data() + i);
+                store(hn::ConvertTo(kIntegers, within), to, i);
             }
         };
         put(bounds.left, raster.left, raster.across, left);
@@ -184,7 +184,7 @@ HWY_INLINE hn::Vec<Tag> load_rows(Tag tag, const float* first, int stride) {
 /// Where the points of the cells of a window begin, and which of them bounds reach, before all that
 /// they see.
 struct ReachedCells {
-    Vector left, top;
+    Number left, top;
     Mask reached;
 
     HWY_INLINE ReachedCells(const Reach& reach, const FrontRaster& raster, int column, int row,
@@ -225,12 +225,12 @@ struct Pairs {
             const ReachedCells reached(reach, raster, column, row, i);
             const Mask live =
                 test.may_cover(reached.reached, reached.left, reached.top, reach, raster.extent);
-            const auto at = hn::Add(load(raster.window.offset, i), hn::Set(kIndices, first));
+            const auto at = hn::Add(load(raster.window.offset, i), hn::Set(kWords, first));
             const auto all =
-                hn::Add(hn::ShiftLeft<4>(at), hn::Set(kIndices, static_cast<std::uint32_t>(lane)));
-            const auto compressed = hn::Compress(all, hn::RebindMask(kIndices, live));
-            hn::StoreU(compressed, kIndices, list[0].data() + count);
-            count += static_cast<std::size_t>(std::popcount(bits(live)));
+                hn::Add(hn::ShiftLeft<4>(at), hn::Set(kWords, static_cast<std::uint32_t>(lane)));
+            const auto compressed = hn::Compress(all, hn::RebindMask(kWords, live));
+            hn::StoreU(compressed, kWords, list[0].data() + count);
+            count += static_cast<std::size_t>(std::popcount(bits_of(live)));
         }
     }
 
@@ -322,7 +322,7 @@ struct Lens {
 
 /// Some lanes of a front as it starts, and which of them are active.
 struct StartedLanes {
-    Vector x, y;
+    Number x, y;
     Mask on;
 
     HWY_INLINE StartedLanes(const Lens& lens, const PointPacket& points, int i, Front& front)
@@ -331,12 +331,11 @@ struct StartedLanes {
                        hn::RebindMask(kFloats, hn::Ne(load(points.active, i), hn::Zero(kIntegers))),
                        i, front) {}
 
-    HWY_INLINE StartedLanes(Vector at_x, Vector at_y, Mask active, int i, Front& front)
+    HWY_INLINE StartedLanes(Number at_x, Number at_y, Mask active, int i, Front& front)
         : x(at_x), y(at_y), on(active) {
-        hn::Store(x, kFloats, front.x.data() + i);
-        hn::Store(y, kFloats, front.y.data() + i);
-        hn::Store(hn::IfThenElse(on, set(kInfinity), set(-kInfinity)), kFloats,
-                  front.depth.data() + i);
+        store(x, front.x, i);
+        store(y, front.y, i);
+        store(hn::IfThenElse(on, set(kInfinity), set(-kInfinity)), front.depth, i);
     }
 
     HWY_INLINE void foreshorten(const Lens& lens, int i, Front& front) const {
@@ -344,7 +343,7 @@ struct StartedLanes {
         const auto slope_y = hn::Mul(y, set(lens.slope_step));
         const auto squared =
             hn::Add(hn::Add(set(1.0F), hn::Mul(slope_x, slope_x)), hn::Mul(slope_y, slope_y));
-        hn::Store(hn::Div(set(1.0F), squared), kFloats, front.foreshortening.data() + i);
+        store(hn::Div(set(1.0F), squared), front.foreshortening, i);
     }
 };
 
@@ -377,7 +376,7 @@ struct RasterAxis {
     Lanes<float> in_cell;  ///< a lane's column or row
     float first, count, spacing, offset, centre;
 
-    HWY_INLINE std::pair<Vector, Mask> points(int cell, int i) const {
+    HWY_INLINE std::pair<Number, Mask> points(int cell, int i) const {
         const auto from_first =
             hn::Add(load(in_cell, i), set(static_cast<float>(cell * kBlockSide)));
         const auto middle = hn::Add(hn::Add(from_first, set(first)), set(0.5F));

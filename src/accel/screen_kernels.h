@@ -52,9 +52,6 @@ struct FrontRaster {
     int cells() const { return stride() * (down + kBeyond); }
 };
 
-/// Bit i is set for lane i of sixteen.
-using LaneBits = std::uint32_t;
-
 /// Which of sixteen bounds lie partly in the window.
 LaneBits overlap(const BoundsPacket& bounds, const Window& window);
 /// Bounds of all sixteen.

@@ -18,19 +18,19 @@ namespace ink::HWY_NAMESPACE {
 /// What some lanes of a packet saw, in registers as long as winners are added.
 struct Seen {
     Vectors normal, facet;
-    hn::Vec<Indices> object, primitive;
+    Word object, primitive;
 
     HWY_INLINE Seen()
         : normal{hn::Zero(kFloats), hn::Zero(kFloats), hn::Zero(kFloats)},
           facet(normal),
-          object(hn::Set(kIndices, kNoObject)),
+          object(hn::Set(kWords, kNoObject)),
           primitive(object) {}
 
-    HWY_INLINE void add(const float* shade, Vector qx, Vector qy, Mask lanes) {
+    HWY_INLINE void add(const float* shade, Number qx, Number qy, Mask lanes) {
         using S = ShadeNumbers;
         const auto dx = hn::Sub(qx, set(shade[S::kU]));
         const auto dy = hn::Sub(qy, set(shade[S::kV]));
-        const auto put_normal = [&](std::size_t axis, Vector& to) {
+        const auto put_normal = [&](std::size_t axis, Number& to) {
             const auto n = hn::Add(
                 hn::Add(set(shade[S::kNormal + axis]), hn::Mul(set(shade[S::kRight + axis]), dx)),
                 hn::Mul(set(shade[S::kDown + axis]), dy));
@@ -42,9 +42,9 @@ struct Seen {
         facet.x = hn::IfThenElse(lanes, set(shade[S::kFacet]), facet.x);
         facet.y = hn::IfThenElse(lanes, set(shade[S::kFacet + 1]), facet.y);
         facet.z = hn::IfThenElse(lanes, set(shade[S::kFacet + 2]), facet.z);
-        const auto own = hn::RebindMask(kIndices, lanes);
+        const auto own = hn::RebindMask(kWords, lanes);
         const auto number = [&](std::size_t place) {
-            return hn::BitCast(kIndices, set(shade[place]));
+            return hn::BitCast(kWords, set(shade[place]));
         };
         object = hn::IfThenElse(own, number(S::kObject), object);
         primitive = hn::IfThenElse(own, number(S::kPrimitive), primitive);
@@ -62,10 +62,10 @@ struct Seen {
     }
 };
 
-HWY_INLINE void store(const Vectors& v, int i, Lanes<float>& x, Lanes<float>& y, Lanes<float>& z) {
-    hn::Store(v.x, kFloats, x.data() + i);
-    hn::Store(v.y, kFloats, y.data() + i);
-    hn::Store(v.z, kFloats, z.data() + i);
+HWY_INLINE void store(const Vectors& v, Lanes<float>& x, Lanes<float>& y, Lanes<float>& z, int i) {
+    store(v.x, x, i);
+    store(v.y, y, i);
+    store(v.z, z, i);
 }
 
 /// Rays of a projection, rounded to floats: at a depth, the one through q is at start + (right q.x
@@ -86,7 +86,7 @@ struct RayFloats {
         return {static_cast<float>(x), static_cast<float>(y), static_cast<float>(z)};
     }
 
-    HWY_INLINE Vectors place(Vector qx, Vector qy, Vector depth) const {
+    HWY_INLINE Vectors place(Number qx, Number qy, Number depth) const {
         const auto pixel = hn::Add(set(origin_step), hn::Mul(depth, set(slope_step)));
         const auto x = hn::Mul(qx, pixel);
         const auto y = hn::Mul(qy, pixel);
@@ -98,7 +98,7 @@ struct RayFloats {
     }
 
     /// From where the ray starts.
-    HWY_INLINE Vector distance(Vector qx, Vector qy, Vector depth) const {
+    HWY_INLINE Number distance(Number qx, Number qy, Number depth) const {
         const auto x = hn::Mul(qx, set(slope_step));
         const auto y = hn::Mul(qy, set(slope_step));
         const auto squared = hn::Add(hn::Add(set(1.0F), hn::Mul(x, x)), hn::Mul(y, y));
@@ -115,22 +115,22 @@ HWY_INLINE void see_front(const RayFloats& rays, const Front& front, const Packe
         const auto qy = load(front.y, i);
         const auto winners = load(front.winner, i);
         Seen seen;
-        for (LaneBits left = bits(hit); left != 0;) {
+        for (LaneBits left = bits_of(hit); left != 0;) {
             const std::uint32_t winner = front.winner[i + std::countr_zero(left)];
             const auto own =
-                hn::And(hn::RebindMask(kFloats, hn::Eq(winners, hn::Set(kIndices, winner))), hit);
-            left &= ~bits(own);
+                hn::And(hn::RebindMask(kFloats, hn::Eq(winners, hn::Set(kWords, winner))), hit);
+            left &= ~bits_of(own);
             seen.add(shades[winner / kLanes].numbers[winner % kLanes].data(), qx, qy, own);
         }
-        store(seen.unit_normal(), i, normals.x, normals.y, normals.z);
-        store(seen.facet, i, hits.normal_x, hits.normal_y, hits.normal_z);
-        hn::Store(seen.object, kIndices, hits.object.data() + i);
-        hn::Store(seen.primitive, kIndices, hits.primitive.data() + i);
+        store(seen.unit_normal(), normals.x, normals.y, normals.z, i);
+        store(seen.facet, hits.normal_x, hits.normal_y, hits.normal_z, i);
+        store(seen.object, hits.object, i);
+        store(seen.primitive, hits.primitive, i);
         if (places == nullptr) continue;
-        store(rays.place(qx, qy, hn::IfThenElseZero(hit, depth)), i, places->x, places->y,
-              places->z);
+        store(rays.place(qx, qy, hn::IfThenElseZero(hit, depth)), places->x, places->y, places->z,
+              i);
         const auto t = rays.distance(qx, qy, depth);
-        hn::Store(hn::IfThenElse(hit, t, set(kInfinity)), kFloats, hits.t.data() + i);
+        store(hn::IfThenElse(hit, t, set(kInfinity)), hits.t, i);
     }
 }
 

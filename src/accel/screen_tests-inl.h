@@ -45,10 +45,10 @@ struct Name {
 };
 
 /// Lanes where two surfaces coincide: the lower one counts.
-HWY_INLINE void settle(Vector depth, Mask around, Name name, int i, Front& front) {
+HWY_INLINE void settle(Number depth, Mask around, Name name, int i, Front& front) {
     alignas(64) float depths[kStep];
     hn::Store(depth, kFloats, depths);
-    for (LaneBits lanes = bits(around); lanes != 0; lanes &= lanes - 1) {
+    for (LaneBits lanes = bits_of(around); lanes != 0; lanes &= lanes - 1) {
         const int lane = std::countr_zero(lanes);
         if (name.rank(name.winner) >= name.rank(front.winner[i + lane])) continue;
         front.depth[i + lane] = depths[lane];
@@ -59,16 +59,16 @@ HWY_INLINE void settle(Vector depth, Mask around, Name name, int i, Front& front
 /// Takes the hits that lie in front of what there is; `slack`: how near to it they count as one
 /// with it. There is no branch that depends on what is hit, except where surfaces coincide: a wrong
 /// guess costs as much as the test.
-HWY_INLINE void keep_nearer(Vector depth, Mask covered, float slack, Name name, int i,
+HWY_INLINE void keep_nearer(Number depth, Mask covered, float slack, Name name, int i,
                             Front& front) {
     const auto before = load(front.depth, i);
     const auto hit = hn::And(covered, hn::Le(depth, hn::Add(before, set(slack))));
     const auto nearer = hn::And(hit, hn::Lt(depth, hn::Sub(before, set(slack))));
     const auto around = hn::AndNot(nearer, hit);
-    hn::Store(hn::IfThenElse(nearer, depth, before), kFloats, front.depth.data() + i);
-    const auto winners = hn::IfThenElse(hn::RebindMask(kIndices, nearer),
-                                        hn::Set(kIndices, name.winner), load(front.winner, i));
-    hn::Store(winners, kIndices, front.winner.data() + i);
+    store(hn::IfThenElse(nearer, depth, before), front.depth, i);
+    const auto winners = hn::IfThenElse(hn::RebindMask(kWords, nearer),
+                                        hn::Set(kWords, name.winner), load(front.winner, i));
+    store(winners, front.winner, i);
     if (HWY_UNLIKELY(!hn::AllFalse(kFloats, around))) settle(depth, around, name, i, front);
 }
 
@@ -78,7 +78,7 @@ struct SphereTest {
     SphereForm form;
     float origin_step, slope_step;
 
-    HWY_INLINE Mask may_cover(Mask cells, Vector /*left*/, Vector /*top*/, const Reach& /*reach*/,
+    HWY_INLINE Mask may_cover(Mask cells, Number /*left*/, Number /*top*/, const Reach& /*reach*/,
                               float /*extent*/) const {
         return cells;
     }
@@ -110,7 +110,7 @@ struct SphereTest {
 
 // ---- Triangles ----
 
-HWY_INLINE Vector edge_value(const TriangleForm::Edge& edge, Vector qx, Vector qy) {
+HWY_INLINE Number edge_value(const TriangleForm::Edge& edge, Number qx, Number qy) {
     return hn::Sub(hn::Mul(set(edge.dx), hn::Sub(qy, set(edge.y))),
                    hn::Mul(set(edge.dy), hn::Sub(qx, set(edge.x))));
 }
@@ -138,7 +138,7 @@ struct TriangleTest {
 
     /// Those of the cells that are not beyond an edge, by that corner of their points which lies
     /// farthest inside.
-    HWY_INLINE Mask may_cover(Mask cells, Vector left, Vector top, const Reach& reach,
+    HWY_INLINE Mask may_cover(Mask cells, Number left, Number top, const Reach& reach,
                               float extent) const {
         // No edge is longer than the bounds, and no cell that is reached begins farther from an
         // end of one.
@@ -177,14 +177,14 @@ struct TriangleTest {
 
 /// Moves the rays' points to those nearest to the origin, where they are of the shape's size, and
 /// returns how far.
-HWY_INLINE Vector approach(LocalRays& rays) {
+HWY_INLINE Number approach(LocalRays& rays) {
     const auto s = hn::Neg(hn::Div(dot(rays.p, rays.d), not_zero(dot(rays.d, rays.d))));
     rays.p = along(rays.p, rays.d, s);
     return s;
 }
 
 struct LocalHit {
-    Vector s;
+    Number s;
     Mask covered;
 };
 
@@ -199,8 +199,8 @@ HWY_INLINE LocalHit meet_ball(LocalRays rays) {
 
 /// The part of rays within |x| <= 1 along one axis.
 struct Slab {
-    Vector lo, hi;
-    HWY_INLINE Slab(Vector p, Vector d) {
+    Number lo, hi;
+    HWY_INLINE Slab(Number p, Number d) {
         const auto scale = hn::Div(set(1.0F), not_zero(d));
         const auto a = hn::Mul(hn::Sub(set(-1.0F), p), scale);
         const auto b = hn::Mul(hn::Sub(set(1.0F), p), scale);
@@ -238,7 +238,7 @@ HWY_INLINE LocalHit meet_frustum(LocalRays rays, float slope, float middle, bool
     const auto two = hn::Div(c, not_zero(sum));
     const auto first = hn::Min(one, two);
     const auto second = hn::Max(one, two);
-    const auto within = [&](Vector s) {
+    const auto within = [&](Number s) {
         const auto z = hn::Add(p.z, hn::Mul(s, d.z));
         const auto r = hn::Add(set(middle), hn::Mul(set(slope), z));
         return hn::And(hn::And(hn::Ge(s, slab.lo), hn::Le(s, slab.hi)),
@@ -274,7 +274,7 @@ struct GlyphTest {
     float slope, middle;
     bool capped;
 
-    HWY_INLINE Mask may_cover(Mask cells, Vector /*left*/, Vector /*top*/, const Reach& /*reach*/,
+    HWY_INLINE Mask may_cover(Mask cells, Number /*left*/, Number /*top*/, const Reach& /*reach*/,
                               float /*extent*/) const {
         return cells;
     }

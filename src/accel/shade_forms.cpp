@@ -17,36 +17,25 @@ namespace ink::HWY_NAMESPACE {
 
 using ShadeLanes = std::array<Lanes<float>, ShadeNumbers::kCount>;
 
-HWY_INLINE void keep(Vector value, Lanes<float>& lanes, int i) {
-    hn::Store(value, kFloats, lanes.data() + i);
-}
-
-HWY_INLINE void keep(const Vectors& v, ShadeLanes& lanes, std::size_t first, int i) {
-    keep(v.x, lanes[first], i);
-    keep(v.y, lanes[first + 1], i);
-    keep(v.z, lanes[first + 2], i);
+HWY_INLINE void store(const Vectors& v, ShadeLanes& lanes, std::size_t first, int i) {
+    store(v.x, lanes[first], i);
+    store(v.y, lanes[first + 1], i);
+    store(v.z, lanes[first + 2], i);
 }
 
 HWY_INLINE Vectors load(const Points& points, int first) {
     return {load(points.x, first), load(points.y, first), load(points.z, first)};
 }
-HWY_INLINE Vectors difference(const Vectors& a, const Vectors& b) {
-    return {hn::Sub(a.x, b.x), hn::Sub(a.y, b.y), hn::Sub(a.z, b.z)};
-}
-HWY_INLINE Vectors scaled(const Vectors& a, Vector by) {
+HWY_INLINE Vectors scaled(const Vectors& a, Number by) {
     return {hn::Mul(a.x, by), hn::Mul(a.y, by), hn::Mul(a.z, by)};
 }
 
 /// Of unit length, on the side that is seen. Zero without an area.
-HWY_INLINE Vectors facet(const TriangleLanes& triangles, Vector area, int i) {
+HWY_INLINE Vectors facet(const TriangleLanes& triangles, Number area, int i) {
     const Vectors a = load(triangles.a, i);
-    const Vectors e = difference(load(triangles.b, i), a);
-    const Vectors f = difference(load(triangles.c, i), a);
-    const auto minor = [](auto p, auto q, auto r, auto s) {
-        return hn::Sub(hn::Mul(p, q), hn::Mul(r, s));
-    };
-    const Vectors n{minor(e.y, f.z, e.z, f.y), minor(e.z, f.x, e.x, f.z),
-                    minor(e.x, f.y, e.y, f.x)};
+    const Vectors e = load(triangles.b, i) - a;
+    const Vectors f = load(triangles.c, i) - a;
+    const Vectors n = cross(e, f);
     const auto length = hn::Sqrt(dot(n, n));
     const auto side = hn::Neg(hn::CopySign(set(1.0F), area));
     return scaled(n, hn::IfThenElseZero(hn::Gt(length, hn::Zero(kFloats)), hn::Div(side, length)));
@@ -54,7 +43,7 @@ HWY_INLINE Vectors facet(const TriangleLanes& triangles, Vector area, int i) {
 
 /// A corner's place on the screen from the first one's, and what its normal counts there.
 struct WeighedCorner {
-    Vector du, dv;
+    Number du, dv;
     Vectors n;
 };
 
@@ -90,21 +79,22 @@ HWY_INLINE void lay_normals(const Basis& basis, const ScreenCorners& corners,
         hn::Lt(hn::Abs(area), hn::Mul(set(kThin), hn::Max(squared(b), squared(c))));
     const auto scale =
         hn::IfThenElse(is_thin, hn::Zero(kFloats), hn::Div(set(1.0F), not_zero(area)));
-    const Vectors to_b = difference(b.n, first);
-    const Vectors to_c = difference(c.n, first);
-    const auto slope = [&](Vector along_b, Vector along_c) -> Vectors {
-        const auto of = [&](Vector by_b, Vector by_c) {
+    const Vectors to_b = b.n - first;
+    const Vectors to_c = c.n - first;
+    const auto slope = [&](Number along_b, Number along_c) -> Vectors {
+        const auto of = [&](Number by_b, Number by_c) {
             return hn::Mul(hn::Add(hn::Mul(by_b, along_b), hn::Mul(by_c, along_c)), scale);
         };
         return {of(to_b.x, to_c.x), of(to_b.y, to_c.y), of(to_b.z, to_c.z)};
     };
-    const auto start = [&](Vector a, Vector of_b, Vector of_c) {
+    const auto start = [&](Number a, Number of_b, Number of_c) {
         return hn::IfThenElse(is_thin, hn::Add(hn::Add(a, of_b), of_c), a);
     };
-    keep({start(first.x, b.n.x, c.n.x), start(first.y, b.n.y, c.n.y), start(first.z, b.n.z, c.n.z)},
-         lanes, ShadeNumbers::kNormal, i);
-    keep(slope(c.dv, hn::Neg(b.dv)), lanes, ShadeNumbers::kRight, i);
-    keep(slope(hn::Neg(c.du), b.du), lanes, ShadeNumbers::kDown, i);
+    store(
+        {start(first.x, b.n.x, c.n.x), start(first.y, b.n.y, c.n.y), start(first.z, b.n.z, c.n.z)},
+        lanes, ShadeNumbers::kNormal, i);
+    store(slope(c.dv, hn::Neg(b.dv)), lanes, ShadeNumbers::kRight, i);
+    store(slope(hn::Neg(c.du), b.du), lanes, ShadeNumbers::kDown, i);
 }
 
 void lay_shades(Basis basis, const TriangleLanes& triangles, const ScreenCorners& corners,
@@ -115,16 +105,16 @@ void lay_shades(Basis basis, const TriangleLanes& triangles, const ScreenCorners
         if (normals != nullptr) {
             lay_normals(basis, corners, *normals, i, lanes);
         } else {
-            keep(none, lanes, ShadeNumbers::kNormal, i);
-            keep(none, lanes, ShadeNumbers::kRight, i);
-            keep(none, lanes, ShadeNumbers::kDown, i);
+            store(none, lanes, ShadeNumbers::kNormal, i);
+            store(none, lanes, ShadeNumbers::kRight, i);
+            store(none, lanes, ShadeNumbers::kDown, i);
         }
-        keep(load(corners.a.u, i), lanes[ShadeNumbers::kU], i);
-        keep(load(corners.a.v, i), lanes[ShadeNumbers::kV], i);
-        keep(facet(triangles, load(corners.area, i), i), lanes, ShadeNumbers::kFacet, i);
-        keep(hn::BitCast(kFloats, load(packet.primitive, i)), lanes[ShadeNumbers::kPrimitive], i);
-        keep(hn::BitCast(kFloats, hn::Set(kIndices, packet.object)), lanes[ShadeNumbers::kObject],
-             i);
+        store(load(corners.a.u, i), lanes[ShadeNumbers::kU], i);
+        store(load(corners.a.v, i), lanes[ShadeNumbers::kV], i);
+        store(facet(triangles, load(corners.area, i), i), lanes, ShadeNumbers::kFacet, i);
+        store(hn::BitCast(kFloats, load(packet.primitive, i)), lanes[ShadeNumbers::kPrimitive], i);
+        store(hn::BitCast(kFloats, hn::Set(kWords, packet.object)), lanes[ShadeNumbers::kObject],
+              i);
     }
     lay_side_by_side(lanes, ShadeNumbers::kCount, shades.numbers);
 }

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 
 namespace ink {
 
@@ -26,5 +27,8 @@ struct alignas(64) Lanes : std::array<T, kLanes> {
         return std::array<T, kLanes>::operator[](static_cast<std::size_t>(lane));
     }
 };
+
+/// Bit i is set for lane i.
+using LaneBits = std::uint32_t;
 
 }  // namespace ink

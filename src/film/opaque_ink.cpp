@@ -7,33 +7,23 @@
 #include <hwy/highway.h>
 
 #include "base/block_rows-inl.h"
+#include "base/lanes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace ink::HWY_NAMESPACE {
 
-namespace hn = hwy::HWY_NAMESPACE;
-
-using Floats = hn::CappedTag<float, kLanes>;
-using Pixels = hn::Rebind<std::uint32_t, Floats>;
-using Integers = hn::Rebind<std::int32_t, Floats>;
-constexpr Floats kFloats;
-constexpr Pixels kPixels;
-constexpr Integers kIntegers;
-constexpr std::size_t kStep = hn::MaxLanes(Floats());
 constexpr std::uint32_t kAlpha = 0xFF000000U;
 
 /// One colour of pixels, at its place among their bits.
 template <int kShift>
-HWY_INLINE hn::Vec<Pixels> mix(hn::Vec<Pixels> below, hn::Vec<Floats> ink, hn::Vec<Floats> clear,
-                               float own) {
-    const auto set = [](float value) HWY_ATTR { return hn::Set(kFloats, value); };
-    const auto byte = hn::And(hn::ShiftRight<kShift>(below), hn::Set(kPixels, 0xFFU));
+HWY_INLINE Word mix(Word below, Number ink, Number clear, float own) {
+    const auto byte = hn::And(hn::ShiftRight<kShift>(below), hn::Set(kWords, 0xFFU));
     const auto value =
         hn::Mul(hn::ConvertTo(kFloats, hn::BitCast(kIntegers, byte)), set(1.0F / 255.0F));
     const auto mixed = hn::Add(hn::Mul(value, clear), hn::Mul(ink, set(own)));
     const auto within = hn::Min(hn::Max(mixed, hn::Zero(kFloats)), set(1.0F));
     const auto rounded = hn::Add(hn::Mul(within, set(255.0F)), set(0.5F));
-    return hn::ShiftLeft<kShift>(hn::BitCast(kPixels, hn::ConvertTo(kIntegers, rounded)));
+    return hn::ShiftLeft<kShift>(hn::BitCast(kWords, hn::ConvertTo(kIntegers, rounded)));
 }
 
 bool lay_on_opaque_rows(const Lanes<float>& alpha, Color color, std::uint32_t* pixels,
@@ -41,20 +31,20 @@ bool lay_on_opaque_rows(const Lanes<float>& alpha, Color color, std::uint32_t* p
     constexpr std::size_t kSteps = kLanes / kStep;
     const auto at = [&](std::size_t k)
                         HWY_ATTR { return pixels + k * (kStep / kBlockSide) * stride; };
-    auto all = hn::Set(kPixels, kAlpha);
+    auto all = hn::Set(kWords, kAlpha);
     for (std::size_t k = 0; k < kSteps; ++k) {
-        all = hn::And(all, load_rows(kPixels, at(k), stride));
+        all = hn::And(all, load_rows(kWords, at(k), stride));
     }
-    if (!hn::AllTrue(kPixels, hn::Eq(all, hn::Set(kPixels, kAlpha)))) return false;
+    if (!hn::AllTrue(kWords, hn::Eq(all, hn::Set(kWords, kAlpha)))) return false;
     for (std::size_t k = 0; k < kSteps; ++k) {
-        const auto below = load_rows(kPixels, at(k), stride);
+        const auto below = load_rows(kWords, at(k), stride);
         const auto ink = hn::Load(kFloats, alpha.data() + k * kStep);
-        const auto clear = hn::Sub(hn::Set(kFloats, 1.0F), ink);
+        const auto clear = hn::Sub(set(1.0F), ink);
         const auto mixed =
             hn::Or(hn::Or(mix<0>(below, ink, clear, color.r), mix<8>(below, ink, clear, color.g)),
-                   hn::Or(mix<16>(below, ink, clear, color.b), hn::Set(kPixels, kAlpha)));
-        const auto inked = hn::RebindMask(kPixels, hn::Ne(ink, hn::Zero(kFloats)));
-        store_rows(kPixels, hn::IfThenElse(inked, mixed, below), at(k), stride);
+                   hn::Or(mix<16>(below, ink, clear, color.b), hn::Set(kWords, kAlpha)));
+        const auto inked = hn::RebindMask(kWords, hn::Ne(ink, hn::Zero(kFloats)));
+        store_rows(kWords, hn::IfThenElse(inked, mixed, below), at(k), stride);
     }
     return true;
 }

@@ -8,19 +8,13 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "base/lanes-inl.h"
+
 HWY_BEFORE_NAMESPACE();
 namespace ink::HWY_NAMESPACE {
 
-namespace hn = hwy::HWY_NAMESPACE;
-
-using Floats = hn::CappedTag<float, kLanes>;
-using Integers = hn::RebindToSigned<Floats>;
-constexpr Floats kFloats;
-constexpr Integers kIntegers;
-constexpr int kStep = static_cast<int>(hn::MaxLanes(Floats()));
-
 /// Floats above zero are in the order of their bits.
-HWY_INLINE hn::Vec<Integers> srgb_byte(const SrgbBytes& table, hn::Vec<Floats> linear) {
+HWY_INLINE Integer srgb_byte(const SrgbBytes& table, Number linear) {
     const auto bits = hn::BitCast(kIntegers, linear);
     const auto first = hn::Set(kIntegers, SrgbBytes::kFirst);
     const auto clamped = hn::Min(hn::Max(bits, first), hn::Set(kIntegers, SrgbBytes::kOne));
@@ -32,8 +26,7 @@ HWY_INLINE hn::Vec<Integers> srgb_byte(const SrgbBytes& table, hn::Vec<Floats> l
 }
 
 /// The three channels of a pixel, R lowest. Grey takes one look-up.
-HWY_INLINE hn::Vec<Integers> srgb_bytes(const SrgbBytes& table, hn::Vec<Floats> r,
-                                        hn::Vec<Floats> g, hn::Vec<Floats> b) {
+HWY_INLINE Integer srgb_bytes(const SrgbBytes& table, Number r, Number g, Number b) {
     const auto red = srgb_byte(table, r);
     const bool grey = hn::AllTrue(kFloats, hn::And(hn::Eq(r, g), hn::Eq(g, b)));
     const auto green = grey ? red : srgb_byte(table, g);
@@ -44,12 +37,12 @@ HWY_INLINE hn::Vec<Integers> srgb_bytes(const SrgbBytes& table, hn::Vec<Floats> 
 HWY_INLINE void encode_block(const SrgbBytes& table, const ColorPacket& linear,
                              Lanes<std::uint32_t>& bytes) {
     const auto zero = hn::Zero(kFloats);
-    const auto one = hn::Set(kFloats, 1.0F);
+    const auto one = set(1.0F);
     for (int i = 0; i < kLanes; i += kStep) {
-        const auto a = hn::Load(kFloats, linear.a.data() + i);
-        auto r = hn::Load(kFloats, linear.r.data() + i);
-        auto g = hn::Load(kFloats, linear.g.data() + i);
-        auto b = hn::Load(kFloats, linear.b.data() + i);
+        const auto a = load(linear.a, i);
+        auto r = load(linear.r, i);
+        auto g = load(linear.g, i);
+        auto b = load(linear.b, i);
         if (!hn::AllTrue(kFloats, hn::Eq(a, one))) {
             const auto seen = hn::Gt(a, zero);
             const auto scale = hn::IfThenElseZero(seen, hn::Div(one, hn::IfThenElse(seen, a, one)));
@@ -58,11 +51,9 @@ HWY_INLINE void encode_block(const SrgbBytes& table, const ColorPacket& linear,
             b = hn::Mul(b, scale);
         }
         const auto alpha = hn::ConvertTo(
-            kIntegers, hn::Add(hn::Mul(hn::Min(hn::Max(a, zero), one), hn::Set(kFloats, 255.0F)),
-                               hn::Set(kFloats, 0.5F)));
+            kIntegers, hn::Add(hn::Mul(hn::Min(hn::Max(a, zero), one), set(255.0F)), set(0.5F)));
         const auto pixel = hn::Or(srgb_bytes(table, r, g, b), hn::ShiftLeft<24>(alpha));
-        hn::Store(hn::BitCast(hn::RebindToUnsigned<Integers>(), pixel),
-                  hn::RebindToUnsigned<Integers>(), bytes.data() + i);
+        store(hn::BitCast(kWords, pixel), bytes, i);
     }
 }
 

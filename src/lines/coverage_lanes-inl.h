@@ -1,6 +1,6 @@
 // What the kernels of lines share; included once for each instruction set.
 
-#include "base/lanes.h"
+#include "base/lanes-inl.h"
 
 #if defined(INKTRACE_COVERAGE_LANES_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef INKTRACE_COVERAGE_LANES_INL_H
@@ -9,22 +9,8 @@
 #define INKTRACE_COVERAGE_LANES_INL_H
 #endif
 
-#include <hwy/highway.h>
-
 HWY_BEFORE_NAMESPACE();
 namespace ink::HWY_NAMESPACE {
-
-namespace hn = hwy::HWY_NAMESPACE;
-
-using Floats = hn::CappedTag<float, kLanes>;
-using Number = hn::Vec<Floats>;
-constexpr Floats kFloats;
-constexpr int kStep = static_cast<int>(hn::MaxLanes(Floats()));
-
-HWY_INLINE Number set(float value) { return hn::Set(kFloats, value); }
-HWY_INLINE Number load(const Lanes<float>& lanes, int first) {
-    return hn::Load(kFloats, lanes.data() + first);
-}
 
 /// square_coverage (lines/coverage.h), a normal a lane.
 class SquareCoverage {

@@ -11,20 +11,10 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "base/lanes-inl.h"
+
 HWY_BEFORE_NAMESPACE();
 namespace ink::HWY_NAMESPACE {
-
-namespace hn = hwy::HWY_NAMESPACE;
-
-using Floats = hn::CappedTag<float, 16>;
-using Integers = hn::Rebind<std::int32_t, Floats>;
-using Number = hn::Vec<Floats>;
-using Integer = hn::Vec<Integers>;
-constexpr Floats kFloats;
-constexpr Integers kIntegers;
-constexpr std::size_t kStep = hn::MaxLanes(Floats());
-
-HWY_INLINE Number set(float value) { return hn::Set(kFloats, value); }
 
 /// Places in one direction: the squares before them, and how far they are on the way to the next.
 struct Between {

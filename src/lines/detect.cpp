@@ -58,7 +58,7 @@ HWY_INLINE std::uint32_t compare_id_runs(const GeometryId* a, const GeometryId* 
                                          std::uint32_t wanted, SuspectBits& found) {
     std::uint32_t hit = 0;
     for (int i = 0; i < kLanes; i += kStep) {
-        hit |= compare_ids(hn::LoadU(kIds, a + i), hn::LoadU(kIds, b + i), i, found);
+        hit |= compare_ids(hn::LoadU(kWords, a + i), hn::LoadU(kWords, b + i), i, found);
     }
     found.id &= wanted;
     return hit & wanted & ~found.id;
@@ -68,7 +68,7 @@ HWY_INLINE std::uint32_t compare_id_runs(const GeometryId* a, const GeometryId* 
 HWY_INLINE std::uint32_t share_surfaces(const std::uint32_t* a, const std::uint32_t* b) {
     std::uint32_t shared = 0;
     for (int i = 0; i < kLanes; i += kStep) {
-        shared |= share_surface(hn::LoadU(kIds, a + i), hn::LoadU(kIds, b + i), i);
+        shared |= share_surface(hn::LoadU(kWords, a + i), hn::LoadU(kWords, b + i), i);
     }
     return shared;
 }

@@ -53,14 +53,12 @@ struct BlockView {
 
 template <class T>
 HWY_INLINE auto own_points(const Lanes<T>& own, int i) {
-    return hn::Load(hn::CappedTag<T, kLanes>(), own.data() + i);
+    return load(own, i);
 }
 
 template <class T>
 HWY_INLINE auto points_on_right(const Lanes<T>& own, const Lanes<T>& right, int i) {
-    constexpr hn::CappedTag<T, kLanes> kTag;
-    return hn::CombineShiftRightLanes<1>(kTag, hn::Load(kTag, right.data() + i),
-                                         hn::Load(kTag, own.data() + i));
+    return hn::CombineShiftRightLanes<1>(hn::CappedTag<T, kLanes>(), load(right, i), load(own, i));
 }
 
 template <class Tag, class T>

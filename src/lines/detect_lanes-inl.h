@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-#include "base/lanes.h"
+#include "base/lanes-inl.h"
 #include "lines/suspect_bits.h"
 #include "sampling/samples.h"
 
@@ -13,29 +13,8 @@
 #define INKTRACE_DETECT_LANES_INL_H
 #endif
 
-#include <hwy/highway.h>
-
 HWY_BEFORE_NAMESPACE();
 namespace ink::HWY_NAMESPACE {
-
-namespace hn = hwy::HWY_NAMESPACE;
-
-using Floats = hn::CappedTag<float, kLanes>;
-using Ids = hn::Rebind<GeometryId, Floats>;
-constexpr Floats kFloats;
-constexpr Ids kIds;
-constexpr auto kStep = static_cast<int>(hn::MaxLanes(Floats()));
-using Number = hn::Vec<Floats>;
-
-template <class Tag, class Mask>
-HWY_INLINE std::uint32_t bits_of([[maybe_unused]] Tag tag, Mask mask) {
-#if HWY_TARGET <= HWY_AVX3
-    return static_cast<std::uint32_t>(mask.raw);
-#endif
-    std::uint8_t bytes[8] = {};
-    hn::StoreMaskBits(tag, mask, bytes);
-    return static_cast<std::uint32_t>(bytes[0]) | static_cast<std::uint32_t>(bytes[1]) << 8U;
-}
 
 /// Positions and normals of some points.
 struct Surface {
@@ -48,9 +27,9 @@ struct Thresholds {
     Number crease;  ///< the square of the sum of two unit vectors is 2 (1 + cosine)
 
     HWY_INLINE explicit Thresholds(const DetectSettings& settings)
-        : sine_squared(hn::Set(kFloats, settings.chord_sine * settings.chord_sine)),
-          least_squared(hn::Set(kFloats, settings.least_jump * settings.least_jump)),
-          crease(hn::Set(kFloats, 2.0F + 2.0F * settings.crease_cosine)) {}
+        : sine_squared(set(settings.chord_sine * settings.chord_sine)),
+          least_squared(set(settings.least_jump * settings.least_jump)),
+          crease(set(2.0F + 2.0F * settings.crease_cosine)) {}
 };
 
 /// Between hits of one geometry, from bit `i` on: which of them do not fit one smooth surface, and
@@ -72,21 +51,20 @@ HWY_INLINE void compare_surfaces(const Surface& a, const Surface& b, int i,
     const Number bound =
         hn::Mul(hn::Max(hn::Mul(thresholds.sine_squared, chord_squared), thresholds.least_squared),
                 normal_squared);
-    found.depth |= bits_of(kFloats, hn::Gt(hn::Mul(along, along), bound)) << i;
-    found.normal |= bits_of(kFloats, hn::Lt(normal_squared, thresholds.crease)) << i;
+    found.depth |= bits_of(hn::Gt(hn::Mul(along, along), bound)) << i;
+    found.normal |= bits_of(hn::Lt(normal_squared, thresholds.crease)) << i;
 }
 
 /// Where the IDs at the two ends of some edges differ, and where the first one is a hit.
-HWY_INLINE std::uint32_t compare_ids(hn::Vec<Ids> first, hn::Vec<Ids> second, int i,
-                                     SuspectBits& found) {
-    found.id |= bits_of(kIds, hn::Ne(first, second)) << i;
-    return bits_of(kIds, hn::Ne(first, hn::Set(kIds, kBackground))) << i;
+HWY_INLINE std::uint32_t compare_ids(Word first, Word second, int i, SuspectBits& found) {
+    found.id |= bits_of(hn::Ne(first, second)) << i;
+    return bits_of(hn::Ne(first, hn::Set(kWords, kBackground))) << i;
 }
 
 /// Between which pairs of hits no line runs, as they lie on one surface.
-HWY_INLINE std::uint32_t share_surface(hn::Vec<Ids> first, hn::Vec<Ids> second, int i) {
-    const auto known = hn::Lt(first, hn::Set(kIds, SampleGrid::kUnknownSurface));
-    return bits_of(kIds, hn::And(hn::Eq(first, second), known)) << i;
+HWY_INLINE std::uint32_t share_surface(Word first, Word second, int i) {
+    const auto known = hn::Lt(first, hn::Set(kWords, SampleGrid::kUnknownSurface));
+    return bits_of(hn::And(hn::Eq(first, second), known)) << i;
 }
 
 /// Keeps what is looked for, of edges between hits of one geometry.

@@ -10,37 +10,27 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "base/lanes-inl.h"
+
 HWY_BEFORE_NAMESPACE();
 namespace ink::HWY_NAMESPACE {
 
-namespace hn = hwy::HWY_NAMESPACE;
-
-using Floats = hn::CappedTag<float, kLanes>;
-using Integers = hn::RebindToSigned<Floats>;
-using Numbers = hn::RebindToUnsigned<Floats>;
-constexpr Floats kFloats;
-constexpr Integers kIntegers;
-constexpr Numbers kNumbers;
-constexpr int kStep = static_cast<int>(hn::MaxLanes(Floats()));
-
 /// What points of the grid, by their indices, saw.
-HWY_INLINE void find_end(const SampleGrid& grid, const BallTable& table, hn::Vec<Integers> point,
-                         int i, BallLanes& balls, EdgeEnds& ends) {
+HWY_INLINE void find_end(const SampleGrid& grid, const BallTable& table, Integer point, int i,
+                         BallLanes& balls, EdgeEnds& ends) {
     const auto id = hn::BitCast(
-        kNumbers,
+        kWords,
         hn::GatherIndex(kIntegers, reinterpret_cast<const std::int32_t*>(grid.id.data()), point));
-    const auto hit = hn::Ne(id, hn::Set(kNumbers, kBackground));
+    const auto hit = hn::Ne(id, hn::Set(kWords, kBackground));
     const auto seen = hn::RebindMask(kFloats, hit);
-    const auto primitive = hn::IfThenElseZero(hit, hn::Sub(id, hn::Set(kNumbers, table.first)));
-    hn::Store(id, kNumbers, ends.id.data() + i);
-    hn::Store(primitive, kNumbers, ends.primitive.data() + i);
-    hn::Store(hn::IfThenElse(hit, hn::Set(kNumbers, table.object),
-                             hn::Set(kNumbers, SurfaceKey::kNothing)),
-              kNumbers, ends.object.data() + i);
+    const auto primitive = hn::IfThenElseZero(hit, hn::Sub(id, hn::Set(kWords, table.first)));
+    store(id, ends.id, i);
+    store(primitive, ends.primitive, i);
+    store(hn::IfThenElse(hit, hn::Set(kWords, table.object), hn::Set(kWords, SurfaceKey::kNothing)),
+          ends.object, i);
     const auto first = hn::ShiftLeft<2>(hn::BitCast(kIntegers, primitive));
     const auto put = [&](const float* from, auto index, Lanes<float>& to) {
-        hn::Store(hn::IfThenElseZero(seen, hn::GatherIndex(kFloats, from, index)), kFloats,
-                  to.data() + i);
+        store(hn::IfThenElseZero(seen, hn::GatherIndex(kFloats, from, index)), to, i);
     };
     put(table.balls, first, balls.x);
     put(table.balls + 1, first, balls.y);
@@ -65,17 +55,17 @@ void find_edges(const SampleGrid& grid, std::span<const SuspectEdge> edges, cons
     const auto one = hn::Set(kIntegers, 1);
     const auto place = [&](auto at, int from) {
         const auto number = hn::ConvertTo(kFloats, hn::Add(at, hn::Set(kIntegers, from)));
-        return hn::Mul(hn::Add(number, hn::Set(kFloats, 0.5F)), hn::Set(kFloats, grid.spacing));
+        return hn::Mul(hn::Add(number, set(0.5F)), set(grid.spacing));
     };
     for (int i = 0; i < kLanes; i += kStep) {
-        const auto x = hn::Load(kIntegers, column.data() + i);
-        const auto y = hn::Load(kIntegers, row.data() + i);
-        const auto below = hn::Load(kIntegers, down.data() + i);
+        const auto x = load(column, i);
+        const auto y = load(row, i);
+        const auto below = load(down, i);
         const auto beside = hn::Sub(one, below);
-        hn::Store(place(x, grid.x0), kFloats, lanes.ax.data() + i);
-        hn::Store(place(y, grid.y0), kFloats, lanes.ay.data() + i);
-        hn::Store(place(hn::Add(x, beside), grid.x0), kFloats, lanes.bx.data() + i);
-        hn::Store(place(hn::Add(y, below), grid.y0), kFloats, lanes.by.data() + i);
+        store(place(x, grid.x0), lanes.ax, i);
+        store(place(y, grid.y0), lanes.ay, i);
+        store(place(hn::Add(x, beside), grid.x0), lanes.bx, i);
+        store(place(hn::Add(y, below), grid.y0), lanes.by, i);
         const auto point = hn::Add(hn::Mul(y, width), x);
         const auto next = hn::Add(point, hn::Add(hn::Mul(below, width), beside));
         find_end(grid, table, point, i, lanes.first, first);

@@ -36,12 +36,6 @@ inline constexpr BlockOffsets kBlockOffsets;
 HWY_BEFORE_NAMESPACE();
 namespace ink::HWY_NAMESPACE {
 
-namespace hn = hwy::HWY_NAMESPACE;
-
-using Integers = hn::RebindToSigned<Floats>;
-constexpr Integers kIntegers;
-using Integer = hn::Vec<Integers>;
-
 /// Strokes as straight bands, and the pixels of the tile that each may ink.
 struct Bands {
     Lanes<float> along_x, along_y;  ///< unit directions

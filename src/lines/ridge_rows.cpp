@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <array>
 
-#include "base/lanes.h"
-
 // Everything between the two namespace macros is built once for each instruction set.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "lines/ridge_rows.cpp"
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
+
+#include "base/lanes-inl.h"
 
 #ifndef INK_RAY_RAMP
 #define INK_RAY_RAMP
@@ -26,27 +26,7 @@ struct RayRamp {
 HWY_BEFORE_NAMESPACE();
 namespace ink::HWY_NAMESPACE {
 
-namespace hn = hwy::HWY_NAMESPACE;
-
-using Floats = hn::CappedTag<float, kLanes>;
-using Ids = hn::Rebind<GeometryId, Floats>;
-constexpr Floats kFloats;
-constexpr Ids kIds;
-using Number = hn::Vec<Floats>;
-constexpr auto kStep = static_cast<int>(hn::MaxLanes(Floats()));
-
 HWY_INLINE Number load(const float* from) { return hn::LoadU(kFloats, from); }
-
-template <class Tag, class Mask>
-HWY_INLINE NodeBits bits_of(Tag tag, Mask mask) {
-    std::uint8_t bytes[8] = {};
-    hn::StoreMaskBits(tag, mask, bytes);
-    return static_cast<NodeBits>(bytes[0]) | static_cast<NodeBits>(bytes[1]) << 8U;
-}
-
-HWY_INLINE Number dot(Number ax, Number ay, Number az, Number bx, Number by, Number bz) {
-    return hn::Add(hn::Add(hn::Mul(ax, bx), hn::Mul(ay, by)), hn::Mul(az, bz));
-}
 
 HWY_INLINE NodeBits link_some(const NodeRow& row_a, const NodeRow& row_b, std::size_t i) {
     const RidgeGrid& grid = row_a.grid;
@@ -54,35 +34,32 @@ HWY_INLINE NodeBits link_some(const NodeRow& row_a, const NodeRow& row_b, std::s
     const std::size_t b = row_b.first + i;
     constexpr float kLeastCosine = 0.5F;
     constexpr float kChordSine = 0.6F;
-    const auto id_a = hn::LoadU(kIds, grid.id.data() + a);
-    const auto id_b = hn::LoadU(kIds, grid.id.data() + b);
-    const NodeBits other = bits_of(kIds, hn::Ne(id_a, id_b));
-    const NodeBits hit = bits_of(kIds, hn::Ne(id_a, hn::Set(kIds, kBackground)));
+    const auto id_a = hn::LoadU(kWords, grid.id.data() + a);
+    const auto id_b = hn::LoadU(kWords, grid.id.data() + b);
+    const NodeBits other = bits_of(hn::Ne(id_a, id_b));
+    const NodeBits hit = bits_of(hn::Ne(id_a, hn::Set(kWords, kBackground)));
     const NodeBits alike = hit & ~other;
     if (alike == 0) return 0;
     const auto difference = [&](const auto& from, const auto& to) HWY_ATTR {
         return hn::Sub(load(to.data() + row_b.first_place + i),
                        load(from.data() + row_a.first_place + i));
     };
-    const Number cx = difference(row_a.places.x, row_b.places.x);
-    const Number cy = difference(row_a.places.y, row_b.places.y);
-    const Number cz = difference(row_a.places.z, row_b.places.z);
-    const Number ax = load(grid.nx.data() + a);
-    const Number ay = load(grid.ny.data() + a);
-    const Number az = load(grid.nz.data() + a);
-    const Number bx = load(grid.nx.data() + b);
-    const Number by = load(grid.ny.data() + b);
-    const Number bz = load(grid.nz.data() + b);
-    const Number mx = hn::Add(ax, bx);
-    const Number my = hn::Add(ay, by);
-    const Number mz = hn::Add(az, bz);
-    const Number along = dot(cx, cy, cz, mx, my, mz);
+    const Vectors chord{difference(row_a.places.x, row_b.places.x),
+                        difference(row_a.places.y, row_b.places.y),
+                        difference(row_a.places.z, row_b.places.z)};
+    const auto normal = [&](std::size_t at) HWY_ATTR {
+        return Vectors{load(grid.nx.data() + at), load(grid.ny.data() + at),
+                       load(grid.nz.data() + at)};
+    };
+    const Vectors na = normal(a);
+    const Vectors nb = normal(b);
+    const Vectors sum = na + nb;
+    const Number along = dot(chord, sum);
     const Number most =
-        hn::Mul(hn::Mul(hn::Set(kFloats, kChordSine * kChordSine), dot(cx, cy, cz, cx, cy, cz)),
-                dot(mx, my, mz, mx, my, mz));
+        hn::Mul(hn::Mul(set(kChordSine * kChordSine), dot(chord, chord)), dot(sum, sum));
     const auto flat = hn::Le(hn::Mul(along, along), most);
-    const auto straight = hn::Gt(dot(ax, ay, az, bx, by, bz), hn::Set(kFloats, kLeastCosine));
-    return alike & bits_of(kFloats, hn::And(flat, straight));
+    const auto straight = hn::Gt(dot(na, nb), set(kLeastCosine));
+    return alike & bits_of(hn::And(flat, straight));
 }
 
 /// Fills words with what `some(i)` says of the nodes from i on.
@@ -103,26 +80,24 @@ void link_nodes(const NodeRow& a, const NodeRow& b, int count, NodeBits* links) 
 }
 
 HWY_INLINE Number at(const RayRamp& ramp, Number i) {
-    return hn::Add(hn::Set(kFloats, ramp.first), hn::Mul(hn::Set(kFloats, ramp.step), i));
+    return hn::Add(set(ramp.first), hn::Mul(set(ramp.step), i));
 }
 
 void place_row(const GeometryId* ids, const float* t, int count,
                const std::array<RayRamp, 3>& origin, const std::array<RayRamp, 3>& direction,
                NodePlaces& places) {
-    const auto background = hn::Set(kIds, kBackground);
+    const auto background = hn::Set(kWords, kBackground);
     for (int first = 0; first < count; first += kStep) {
-        if (hn::AllTrue(kIds, hn::Eq(hn::LoadU(kIds, ids + first), background))) continue;
+        if (hn::AllTrue(kWords, hn::Eq(hn::LoadU(kWords, ids + first), background))) continue;
         const Number i = hn::Iota(kFloats, static_cast<float>(first));
-        const Number dx = at(direction[0], i);
-        const Number dy = at(direction[1], i);
-        const Number dz = at(direction[2], i);
-        const Number scale = hn::Div(load(t + first), hn::Sqrt(dot(dx, dy, dz, dx, dy, dz)));
-        const auto place = [&](const RayRamp& from, Number d, std::vector<float>& to) HWY_ATTR {
-            hn::StoreU(hn::Add(at(from, i), hn::Mul(d, scale)), kFloats, to.data() + first);
+        const Vectors d{at(direction[0], i), at(direction[1], i), at(direction[2], i)};
+        const Number scale = hn::Div(load(t + first), hn::Sqrt(dot(d, d)));
+        const auto place = [&](const RayRamp& from, Number along, std::vector<float>& to) HWY_ATTR {
+            hn::StoreU(hn::Add(at(from, i), hn::Mul(along, scale)), kFloats, to.data() + first);
         };
-        place(origin[0], dx, places.x);
-        place(origin[1], dy, places.y);
-        place(origin[2], dz, places.z);
+        place(origin[0], d.x, places.x);
+        place(origin[1], d.y, places.y);
+        place(origin[2], d.z, places.z);
     }
 }
 
@@ -174,7 +149,7 @@ class Derivatives {
         return hn::Add(hn::Sub(a, centre_), hn::Sub(b, centre_));
     }
     static HWY_INLINE void add(Number& sum, Number value, float weight) {
-        sum = hn::Add(sum, hn::Mul(value, hn::Set(kFloats, weight)));
+        sum = hn::Add(sum, hn::Mul(value, set(weight)));
     }
     HWY_INLINE void add_odd_in_x(const MirroredPoints& points, Number value) {
         add(x_, value, points.weights[0]);
@@ -217,7 +192,7 @@ void cross_rows(const RidgeRow& a, const RidgeRow& b, int count, NodeBits* cross
     fill_words(count, crossed, [&](int i) HWY_ATTR {
         const auto strong =
             hn::And(hn::Gt(load(a.strength + i), zero), hn::Gt(load(b.strength + i), zero));
-        const NodeBits both = bits_of(kFloats, strong);
+        const NodeBits both = bits_of(strong);
         if (both == 0) return NodeBits{0};
         const Number turn = hn::Add(hn::Mul(load(a.along_x + i), load(b.along_x + i)),
                                     hn::Mul(load(a.along_y + i), load(b.along_y + i)));
@@ -227,8 +202,8 @@ void cross_rows(const RidgeRow& a, const RidgeRow& b, int count, NodeBits* cross
         // Where the slope is zero between the two, times something above zero.
         const Number bend =
             hn::Add(hn::Mul(load(a.bend + i), hn::Abs(h)), hn::Mul(load(b.bend + i), hn::Abs(g)));
-        return both & bits_of(kFloats, hn::Lt(bend, zero)) &
-               (bits_of(kFloats, hn::Lt(g, zero)) ^ bits_of(kFloats, hn::Lt(h, zero)));
+        return both & bits_of(hn::Lt(bend, zero)) &
+               (bits_of(hn::Lt(g, zero)) ^ bits_of(hn::Lt(h, zero)));
     });
 }
 

@@ -11,11 +11,6 @@
 HWY_BEFORE_NAMESPACE();
 namespace ink::HWY_NAMESPACE {
 
-namespace hn = hwy::HWY_NAMESPACE;
-
-using Integers = hn::RebindToSigned<Floats>;
-constexpr Integers kIntegers;
-
 HWY_INLINE void find_shares(const SegmentEnds& segments, float q, int i, CornerShares& shares) {
     const Number zero = hn::Zero(kFloats);
     const Number half = set(0.5F);

@@ -6,42 +6,38 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "base/lanes-inl.h"
+
 HWY_BEFORE_NAMESPACE();
 namespace ink::HWY_NAMESPACE {
 
-namespace hn = hwy::HWY_NAMESPACE;
-
-using Pixels = hn::CappedTag<std::uint32_t, 16>;
-constexpr Pixels kPixels;
-constexpr std::size_t kStep = hn::MaxLanes(Pixels());
+using Bytes = hn::Repartition<std::uint16_t, Words>;
+constexpr Bytes kBytes;
 
 /// Every other byte in sixteen bits of its own, so that products fit: below 255 * 256.
-template <class V, class S>
-HWY_INLINE V mixed(V a, V b, S shares) {
-    const hn::Repartition<std::uint16_t, Pixels> bytes;
-    const auto even = hn::Set(bytes, 0x00FF);
-    const auto rest = hn::Sub(hn::Set(bytes, 256), shares);
+HWY_INLINE Word mixed(Word a, Word b, hn::Vec<Bytes> shares) {
+    const auto even = hn::Set(kBytes, 0x00FF);
+    const auto rest = hn::Sub(hn::Set(kBytes, 256), shares);
     const auto mix = [&](auto first, auto second) HWY_ATTR {
         return hn::Add(hn::Mul(first, rest), hn::Mul(second, shares));
     };
-    const auto a16 = hn::BitCast(bytes, a);
-    const auto b16 = hn::BitCast(bytes, b);
+    const auto a16 = hn::BitCast(kBytes, a);
+    const auto b16 = hn::BitCast(kBytes, b);
     const auto low = mix(hn::And(a16, even), hn::And(b16, even));
     const auto high = mix(hn::ShiftRight<8>(a16), hn::ShiftRight<8>(b16));
-    return hn::BitCast(kPixels, hn::Or(hn::ShiftRight<8>(low), hn::AndNot(even, high)));
+    return hn::BitCast(kWords, hn::Or(hn::ShiftRight<8>(low), hn::AndNot(even, high)));
 }
 
 void mix_rows_lanes(const std::uint32_t* a, const std::uint32_t* b, std::uint32_t share,
                     std::size_t count, std::uint32_t* HWY_RESTRICT out) {
-    const hn::Repartition<std::uint16_t, Pixels> bytes;
-    const auto shares = hn::Set(bytes, static_cast<std::uint16_t>(share));
+    const auto shares = hn::Set(kBytes, static_cast<std::uint16_t>(share));
     std::size_t k = 0;
     for (; k + kStep <= count; k += kStep) {
-        hn::StoreU(mixed(hn::LoadU(kPixels, a + k), hn::LoadU(kPixels, b + k), shares), kPixels,
+        hn::StoreU(mixed(hn::LoadU(kWords, a + k), hn::LoadU(kWords, b + k), shares), kWords,
                    out + k);
     }
     for (; k < count; ++k) {
-        const auto one = mixed(hn::Set(kPixels, a[k]), hn::Set(kPixels, b[k]), shares);
+        const auto one = mixed(hn::Set(kWords, a[k]), hn::Set(kWords, b[k]), shares);
         out[k] = hn::GetLane(one);
     }
 }
@@ -49,31 +45,29 @@ void mix_rows_lanes(const std::uint32_t* a, const std::uint32_t* b, std::uint32_
 void mix_columns_lanes(const std::uint32_t* row, const std::int32_t* first,
                        const std::uint32_t* shares, std::size_t count,
                        std::uint32_t* HWY_RESTRICT out) {
-    const hn::Rebind<std::int32_t, Pixels> places;
-    const hn::Repartition<std::uint16_t, Pixels> bytes;
     std::size_t k = 0;
     for (; k + kStep <= count; k += kStep) {
         // As many columns lie between no more than as many and two of the row.
         const std::uint32_t* const from = row + first[k];
-        const auto low = hn::LoadU(kPixels, from);
-        const auto high = hn::LoadU(kPixels, from + kStep);
-        const auto own = hn::Sub(hn::LoadU(places, first + k), hn::Set(places, first[k]));
-        const auto next = hn::Add(own, hn::Set(places, 1));
+        const auto low = hn::LoadU(kWords, from);
+        const auto high = hn::LoadU(kWords, from + kStep);
+        const auto own = hn::Sub(hn::LoadU(kIntegers, first + k), hn::Set(kIntegers, first[k]));
+        const auto next = hn::Add(own, hn::Set(kIntegers, 1));
         const auto look_up = [&](auto places_from) HWY_ATTR {
-            const auto most = hn::Set(places, static_cast<std::int32_t>(kStep) - 1);
-            const auto indices = hn::IndicesFromVec(kPixels, hn::And(places_from, most));
-            return hn::IfThenElse(hn::RebindMask(kPixels, hn::Gt(places_from, most)),
+            const auto most = hn::Set(kIntegers, kStep - 1);
+            const auto indices = hn::IndicesFromVec(kWords, hn::And(places_from, most));
+            return hn::IfThenElse(hn::RebindMask(kWords, hn::Gt(places_from, most)),
                                   hn::TableLookupLanes(high, indices),
                                   hn::TableLookupLanes(low, indices));
         };
         const auto a = look_up(own);
         const auto b = look_up(next);
-        const auto share = hn::BitCast(bytes, hn::LoadU(kPixels, shares + k));
-        hn::StoreU(mixed(a, b, share), kPixels, out + k);
+        const auto share = hn::BitCast(kBytes, hn::LoadU(kWords, shares + k));
+        hn::StoreU(mixed(a, b, share), kWords, out + k);
     }
     for (; k < count; ++k) {
-        const auto one = mixed(hn::Set(kPixels, row[first[k]]), hn::Set(kPixels, row[first[k] + 1]),
-                               hn::BitCast(bytes, hn::Set(kPixels, shares[k])));
+        const auto one = mixed(hn::Set(kWords, row[first[k]]), hn::Set(kWords, row[first[k] + 1]),
+                               hn::BitCast(kBytes, hn::Set(kWords, shares[k])));
         out[k] = hn::GetLane(one);
     }
 }

@@ -6,33 +6,15 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "base/lanes-inl.h"
+
 HWY_BEFORE_NAMESPACE();
 namespace ink::HWY_NAMESPACE {
-
-namespace hn = hwy::HWY_NAMESPACE;
-
-using Floats = hn::CappedTag<float, kLanes>;
-using Integers = hn::RebindToSigned<Floats>;
-using Numbers = hn::RebindToUnsigned<Floats>;
-using Number = hn::Vec<Floats>;
-constexpr Floats kFloats;
-constexpr Integers kIntegers;
-constexpr Numbers kNumbers;
-constexpr int kStep = static_cast<int>(hn::MaxLanes(Floats()));
-
-HWY_INLINE Number set(float value) { return hn::Set(kFloats, value); }
-
-/// One for each lane.
-HWY_INLINE std::uint32_t bits(hn::Mask<Floats> mask) {
-    std::array<std::uint8_t, 8> bytes{};
-    hn::StoreMaskBits(kFloats, mask, bytes.data());
-    return bytes[0] | static_cast<std::uint32_t>(bytes[1]) << 8U;
-}
 
 using Weights = std::array<Number, 4>;
 
 /// The first of the heaviest corners.
-HWY_INLINE hn::Vec<Integers> heaviest(const Weights& weights) {
+HWY_INLINE Integer heaviest(const Weights& weights) {
     Number most = weights[0];
     auto corner = hn::Zero(kIntegers);
     for (std::size_t k = 1; k < 4; ++k) {
@@ -67,8 +49,8 @@ HWY_INLINE float byte_of(std::uint32_t pixel, std::size_t channel) {
 }
 
 /// Of straight alpha: colours count by their alpha. `all` is the sum of the weights.
-HWY_INLINE hn::Vec<Numbers> mix(const std::array<std::uint32_t, 4>& corners, const Weights& weights,
-                                Number all) {
+HWY_INLINE Word mix(const std::array<std::uint32_t, 4>& corners, const Weights& weights,
+                    Number all) {
     std::array<Number, 4> sums{set(0.0F), set(0.0F), set(0.0F), set(0.0F)};
     for (std::size_t k = 0; k < 4; ++k) {
         const Number weight = hn::Mul(weights[k], set(byte_of(corners[k], 3)));
@@ -78,10 +60,10 @@ HWY_INLINE hn::Vec<Numbers> mix(const std::array<std::uint32_t, 4>& corners, con
         sums[3] = hn::Add(sums[3], weight);
     }
     const auto rounded = [](Number value) HWY_ATTR {
-        return hn::BitCast(kNumbers, hn::ConvertTo(kIntegers, hn::Add(value, set(0.5F))));
+        return hn::BitCast(kWords, hn::ConvertTo(kIntegers, hn::Add(value, set(0.5F))));
     };
     auto pixels = hn::ShiftLeft<24>(rounded(hn::Div(sums[3], all)));
-    const auto seen = hn::RebindMask(kNumbers, hn::Gt(sums[3], set(0.0F)));
+    const auto seen = hn::RebindMask(kWords, hn::Gt(sums[3], set(0.0F)));
     const Number divisor = hn::IfThenElse(hn::Gt(sums[3], set(0.0F)), sums[3], set(1.0F));
     const auto color = [&](std::size_t c) HWY_ATTR {
         return hn::IfThenElseZero(seen, rounded(hn::Div(sums[c], divisor)));
@@ -95,26 +77,26 @@ void mix_all(const CellCorners& corners, std::span<const DividingLine> lines,
              const Lanes<float>& all_x, const Lanes<float>& all_y, MixedPixels& mixed) {
     mixed.known = 0;
     for (int i = 0; i < kLanes; i += kStep) {
-        const Number x = hn::Load(kFloats, all_x.data() + i);
-        const Number y = hn::Load(kFloats, all_y.data() + i);
+        const Number x = load(all_x, i);
+        const Number y = load(all_y, i);
         const Number right = hn::Sub(x, set(corners.places[0].x));
         const Number below = hn::Sub(y, set(corners.places[0].y));
         const Number left = hn::Sub(set(1.0F), right);
         const Number above = hn::Sub(set(1.0F), below);
         Weights weights{hn::Mul(left, above), hn::Mul(right, above), hn::Mul(left, below),
                         hn::Mul(right, below)};
-        hn::Store(heaviest(weights), kIntegers, mixed.nearest.data() + i);
+        store(heaviest(weights), mixed.nearest, i);
         Weights divided{set(0.0F), set(0.0F), set(0.0F), set(0.0F)};
         for (const DividingLine& line : lines) add_divided(line, x, y, divided);
         drop_divided(divided, weights);
-        hn::Store(heaviest(weights), kIntegers, mixed.seen.data() + i);
+        store(heaviest(weights), mixed.seen, i);
         const Number all =
             hn::Add(hn::Add(hn::Add(weights[0], weights[1]), weights[2]), weights[3]);
         constexpr float kLeast = 1e-3F;
         const auto known = hn::Ge(all, set(kLeast));
-        mixed.known |= bits(known) << i;
+        mixed.known |= bits_of(known) << i;
         const Number sum = hn::IfThenElse(known, all, set(1.0F));
-        hn::Store(mix(corners.pixels, weights, sum), kNumbers, mixed.pixels.data() + i);
+        store(mix(corners.pixels, weights, sum), mixed.pixels, i);
     }
 }
 

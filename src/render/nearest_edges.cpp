@@ -8,23 +8,15 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "base/lanes-inl.h"
+
 HWY_BEFORE_NAMESPACE();
 namespace ink::HWY_NAMESPACE {
-
-namespace hn = hwy::HWY_NAMESPACE;
-
-using Floats = hn::CappedTag<float, kLanes>;
-using Numbers = hn::Rebind<std::uint32_t, Floats>;
-constexpr Floats kFloats;
-constexpr Numbers kNumbers;
-using Number = hn::Vec<Floats>;
-
-HWY_INLINE Number set(float value) { return hn::Set(kFloats, value); }
 
 /// From a pixel to an edge.
 struct Approach {
     Number vx, vy, squared;
-    hn::Mask<Floats> inside;  ///< not to one of its ends
+    Mask inside;  ///< not to one of its ends
 };
 
 HWY_INLINE Approach approach(Number px, Number py, Number ax, Number ay, Number ux, Number uy,
@@ -60,25 +52,24 @@ std::uint32_t find_starts_lanes(const Lanes<std::uint32_t>& values, std::uint32_
 }
 
 /// The values of the row above from the i-th on; of the first row itself.
-HWY_INLINE hn::Vec<Numbers> row_above(const Lanes<std::uint32_t>& values, int i) {
-    if (i > 0) return hn::LoadU(kNumbers, values.data() + i - kBlockSide);
-    constexpr hn::RebindToSigned<Numbers> kPlaces;
-    const auto above = hn::Sub(hn::Iota(kPlaces, 0), hn::Set(kPlaces, kBlockSide));
+HWY_INLINE Word row_above(const Lanes<std::uint32_t>& values, int i) {
+    if (i > 0) return hn::LoadU(kWords, values.data() + i - kBlockSide);
+    const auto above = hn::Sub(hn::Iota(kIntegers, 0), hn::Set(kIntegers, kBlockSide));
     const auto places =
-        hn::Max(above, hn::And(hn::Iota(kPlaces, 0), hn::Set(kPlaces, kBlockSide - 1)));
-    return hn::TableLookupLanes(hn::Load(kNumbers, values.data()),
-                                hn::IndicesFromVec(kNumbers, places));
+        hn::Max(above, hn::And(hn::Iota(kIntegers, 0), hn::Set(kIntegers, kBlockSide - 1)));
+    return hn::TableLookupLanes(hn::Load(kWords, values.data()),
+                                hn::IndicesFromVec(kWords, places));
 }
 
 int count_changes_lanes(const Lanes<std::uint32_t>& objects,
                         const Lanes<std::uint32_t>& primitives) {
-    const auto none = hn::Set(kNumbers, kNoObject);
-    const auto column = hn::And(hn::Iota(kNumbers, 0), hn::Set(kNumbers, kBlockSide - 1));
-    const auto is_first = hn::Eq(column, hn::Zero(kNumbers));
+    const auto none = hn::Set(kWords, kNoObject);
+    const auto column = hn::And(hn::Iota(kWords, 0), hn::Set(kWords, kBlockSide - 1));
+    const auto is_first = hn::Eq(column, hn::Zero(kWords));
     std::size_t changes = 0;
-    for (int i = 0; i < kLanes; i += static_cast<int>(hn::MaxLanes(kNumbers))) {
-        const auto object = hn::Load(kNumbers, objects.data() + i);
-        const auto primitive = hn::Load(kNumbers, primitives.data() + i);
+    for (int i = 0; i < kLanes; i += kStep) {
+        const auto object = load(objects, i);
+        const auto primitive = load(primitives, i);
         const auto is_hit = hn::Ne(object, none);
         const auto differ = [&](auto other_object, auto other_primitive) HWY_ATTR {
             return hn::And(hn::And(hn::Eq(object, other_object), is_hit),
@@ -86,8 +77,8 @@ int count_changes_lanes(const Lanes<std::uint32_t>& objects,
         };
         // The first of each row is compared with the last one, which does not count.
         const auto beside = differ(hn::Shuffle2103(object), hn::Shuffle2103(primitive));
-        changes += hn::CountTrue(kNumbers, hn::AndNot(is_first, beside));
-        changes += hn::CountTrue(kNumbers, differ(row_above(objects, i), row_above(primitives, i)));
+        changes += hn::CountTrue(kWords, hn::AndNot(is_first, beside));
+        changes += hn::CountTrue(kWords, differ(row_above(objects, i), row_above(primitives, i)));
     }
     return static_cast<int>(changes);
 }
@@ -101,10 +92,10 @@ void find_nearest_lanes(std::span<const ScreenEdge> edges, std::span<const SeenF
         offset_x[i] = x + static_cast<float>(i % kBlockSide);
         offset_y[i] = y + static_cast<float>(i / kBlockSide);
     }
-    for (int i = 0; i < kLanes; i += static_cast<int>(hn::MaxLanes(kFloats))) {
+    for (int i = 0; i < kLanes; i += kStep) {
         const Number px = hn::Load(kFloats, offset_x + i);
         const Number py = hn::Load(kFloats, offset_y + i);
-        const auto triangle = hn::Load(kNumbers, nearest.triangle.data() + i);
+        const auto triangle = load(nearest.triangle, i);
         Number least = set(kInfinity);
         Number to_x = hn::Zero(kFloats);
         Number to_y = to_x;
@@ -114,8 +105,8 @@ void find_nearest_lanes(std::span<const ScreenEdge> edges, std::span<const SeenF
         auto inside = hn::Eq(least, least);
         for (const SeenFace& face : faces) {
             const auto own =
-                hn::RebindMask(kFloats, hn::Lt(hn::Sub(triangle, hn::Set(kNumbers, face.begin)),
-                                               hn::Set(kNumbers, face.end - face.begin)));
+                hn::RebindMask(kFloats, hn::Lt(hn::Sub(triangle, hn::Set(kWords, face.begin)),
+                                               hn::Set(kWords, face.end - face.begin)));
             for (std::uint32_t k = face.first; k < face.first + face.count; ++k) {
                 const ScreenEdge& e = edges[k];
                 const Number ux = set(e.along.x);
@@ -133,15 +124,13 @@ void find_nearest_lanes(std::span<const ScreenEdge> edges, std::span<const SeenF
         }
         const Number distance = hn::Sqrt(least);
         const Number inverse = hn::Div(set(1.0F), hn::Max(distance, set(1e-6F)));
-        const auto store = [i](Number value, Lanes<float>& lanes)
-                               HWY_ATTR { hn::Store(value, kFloats, lanes.data() + i); };
-        store(hn::IfThenElse(inside, hn::Neg(along_y), hn::Mul(to_x, inverse)), nearest.nx);
-        store(hn::IfThenElse(inside, along_x, hn::Mul(to_y, inverse)), nearest.ny);
-        store(t, nearest.t);
+        store(hn::IfThenElse(inside, hn::Neg(along_y), hn::Mul(to_x, inverse)), nearest.nx, i);
+        store(hn::IfThenElse(inside, along_x, hn::Mul(to_y, inverse)), nearest.ny, i);
+        store(t, nearest.t, i);
         store(hn::IfThenElse(hn::Lt(distance, set(reach)), distance, set(kInfinity)),
-              nearest.distance);
-        store(to_x, vx);
-        store(to_y, vy);
+              nearest.distance, i);
+        store(to_x, vx, i);
+        store(to_y, vy, i);
     }
 }
 

@@ -13,34 +13,15 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "base/lanes-inl.h"
+
 HWY_BEFORE_NAMESPACE();
 namespace ink::ball_kernels::HWY_NAMESPACE {
 
-namespace hn = hwy::HWY_NAMESPACE;
+using namespace ink::HWY_NAMESPACE;  // the lanes
 
-using Floats = hn::CappedTag<float, kLanes>;
-constexpr Floats kFloats;
-constexpr int kStep = static_cast<int>(hn::MaxLanes(Floats()));
-
-HWY_INLINE auto load(const Lanes<float>& lanes, int first) {
-    return hn::Load(kFloats, lanes.data() + first);
-}
-template <class Vector>
-HWY_INLINE void store(Vector value, Lanes<float>& lanes, int first) {
-    hn::Store(value, kFloats, lanes.data() + first);
-}
-HWY_INLINE auto set(float value) { return hn::Set(kFloats, value); }
-
-template <class Mask>
-HWY_INLINE LaneBits bits(Mask mask, int first) {
-    alignas(8) std::uint8_t bytes[8] = {};
-    hn::StoreMaskBits(kFloats, mask, bytes);
-    return (bytes[0] | static_cast<LaneBits>(bytes[1]) << 8U) << static_cast<unsigned>(first);
-}
-
-template <class Vector>
-HWY_INLINE Vector sum_of_products(Vector ax, Vector bx, Vector ay, Vector by, Vector az,
-                                  Vector bz) {
+HWY_INLINE Number sum_of_products(Number ax, Number bx, Number ay, Number by, Number az,
+                                  Number bz) {
     return hn::Add(hn::Add(hn::Mul(ax, bx), hn::Mul(ay, by)), hn::Mul(az, bz));
 }
 
@@ -54,7 +35,7 @@ LaneBits find_within(const BallPacket& balls, Vec3f point, float reach) {
         const auto squared = sum_of_products(x, x, y, y, z, z);
         const auto near =
             hn::And(hn::Lt(squared, hn::Mul(far, far)), hn::Gt(far, hn::Zero(kFloats)));
-        found |= bits(near, i);
+        found |= bits_of(near) << i;
     }
     return found;
 }
@@ -156,7 +137,7 @@ HWY_INLINE std::uint64_t find_groups(const SkyDirections& directions, std::size_
     for (std::size_t k = 0; k < count; ++k) {
         const SkyDirections::Axes& axes = directions.axes[first + k];
         for (int i = 0; i < kLanes; i += kStep) {
-            found |= std::uint64_t{bits(test(axes, i), i)} << (k * kLanes);
+            found |= std::uint64_t{bits_of(test(axes, i)) << i} << (k * kLanes);
         }
     }
     return found;
@@ -358,8 +339,7 @@ float find_openness(const SkyView& view, Surroundings& surroundings, Vec3f point
 }
 
 /// Within 7e-5: Abramowitz and Stegun 4.4.45.
-template <class Vector>
-HWY_INLINE Vector arc_cosine(Vector x) {
+HWY_INLINE Number arc_cosine(Number x) {
     const auto positive = hn::Abs(x);
     auto sum = hn::Add(set(0.0742610F), hn::Mul(positive, set(-0.0187293F)));
     sum = hn::Add(set(-0.2121144F), hn::Mul(positive, sum));
@@ -372,9 +352,8 @@ HWY_INLINE Vector arc_cosine(Vector x) {
 /// The form factor of a ball that the horizon may cut, in closed form (Snyder, Area Light Sources
 /// for Real-Time Graphics, 1996). Of a ball that holds the point: that of half of the sky.
 /// The centre is relative to the point. One lane may be a ball, or a point, as callers like.
-template <class Vector>
-HWY_INLINE Vector open_of_ball(Vector x, Vector y, Vector z, Vector size, Vector nx, Vector ny,
-                               Vector nz) {
+HWY_INLINE Number open_of_ball(Number x, Number y, Number z, Number size, Number nx, Number ny,
+                               Number nz) {
     const auto one = set(1.0F);
     const auto squared = hn::Max(sum_of_products(x, x, y, y, z, z), set(1e-20F));
     const auto up = sum_of_products(x, nx, y, ny, z, nz);

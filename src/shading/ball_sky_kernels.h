@@ -6,9 +6,6 @@
 
 namespace ink::ball_kernels {
 
-/// Bit i is set for lane i of sixteen.
-using LaneBits = std::uint32_t;
-
 /// Which balls of a packet come nearer than `reach` to a point.
 LaneBits within(const BallPacket& balls, Vec3f point, float reach);
 

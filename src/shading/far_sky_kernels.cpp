@@ -9,10 +9,12 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "base/lanes-inl.h"
+
 HWY_BEFORE_NAMESPACE();
 namespace ink::far_kernels::HWY_NAMESPACE {
 
-namespace hn = hwy::HWY_NAMESPACE;
+using namespace ink::HWY_NAMESPACE;  // the lanes
 
 /// A ball on a map, in texels, and the steps of height at which it begins on the way to the map's
 /// two sides.
@@ -63,33 +65,25 @@ struct SpotLanes {
 };
 
 HWY_INLINE void place(const FarSky& sky, const BallPacket& balls, Vec3f towards, SpotLanes& spots) {
-    constexpr hn::CappedTag<float, kLanes> kFloats;
-    constexpr hn::Rebind<std::int32_t, hn::CappedTag<float, kLanes>> kInts;
     Vec3f right;
     Vec3f up;
     make_basis(towards, right, up);
-    const auto set = [](float value) { return hn::Set(kFloats, value); };
     const float middle = 0.5F * static_cast<float>(sky.side());
-    const auto most = hn::Set(kInts, sky.side() - 1);
-    for (int i = 0; i < kLanes; i += static_cast<int>(hn::Lanes(kFloats))) {
-        const auto ball_x = hn::Load(kFloats, balls.x.data() + i);
-        const auto ball_y = hn::Load(kFloats, balls.y.data() + i);
-        const auto ball_z = hn::Load(kFloats, balls.z.data() + i);
-        const auto size = hn::Load(kFloats, balls.radius.data() + i);
-        const auto along = [&](Vec3f d) {
-            return hn::Add(hn::Add(hn::Mul(ball_x, set(d.x)), hn::Mul(ball_y, set(d.y))),
-                           hn::Mul(ball_z, set(d.z)));
-        };
+    const auto most = hn::Set(kIntegers, sky.side() - 1);
+    for (int i = 0; i < kLanes; i += kStep) {
+        const Vectors ball{load(balls.x, i), load(balls.y, i), load(balls.z, i)};
+        const auto size = load(balls.radius, i);
+        const auto along = [&](Vec3f d) { return dot(ball, set(d)); };
         const auto x = hn::Add(hn::Mul(along(right), set(sky.texels)), set(middle));
         const auto y = hn::Add(hn::Mul(along(up), set(sky.texels)), set(middle));
         const auto radius = hn::Mul(size, set(sky.texels));
-        hn::Store(x, kFloats, spots.x.data() + i);
-        hn::Store(y, kFloats, spots.y.data() + i);
-        hn::Store(radius, kFloats, spots.radius.data() + i);
+        store(x, spots.x, i);
+        store(y, spots.y, i);
+        store(radius, spots.radius, i);
         const auto reach = hn::Sub(radius, set(0.5F));
         const auto keep = [&](auto at, Lanes<std::int32_t>& lanes) {
-            const auto texel = hn::ConvertTo(kInts, at);
-            hn::Store(hn::Min(hn::Max(texel, hn::Zero(kInts)), most), kInts, lanes.data() + i);
+            const auto texel = hn::ConvertTo(kIntegers, at);
+            store(hn::Min(hn::Max(texel, hn::Zero(kIntegers)), most), lanes, i);
         };
         keep(hn::Sub(x, reach), spots.left);
         keep(hn::Add(x, reach), spots.right);
@@ -101,7 +95,7 @@ HWY_INLINE void place(const FarSky& sky, const BallPacket& balls, Vec3f towards,
         const auto step = [&](auto h, Lanes<std::int32_t>& lanes) {
             const auto number = hn::Add(hn::Mul(h, set(sky.steps)), set(1.0F));
             const auto kept = hn::Min(hn::Max(number, set(1.0F)), set(255.0F));
-            hn::Store(hn::ConvertTo(kInts, kept), kInts, lanes.data() + i);
+            store(hn::ConvertTo(kIntegers, kept), lanes, i);
         };
         step(hn::Add(begin, height), spots.front);
         step(hn::Sub(begin, height), spots.back);
@@ -128,9 +122,9 @@ void raise_map(const FarSky& sky, std::span<const BallPacket> balls, Vec3f towar
 /// Bit k is set for texel k of a tile where nothing begins above a step.
 HWY_INLINE std::uint64_t free_texels(const FarSky::Tile& tile, std::uint8_t most) {
     constexpr hn::CappedTag<std::uint8_t, 64> kBytes;
-    constexpr std::size_t kStep = hn::MaxLanes(hn::CappedTag<std::uint8_t, 64>());
+    constexpr std::size_t kBytesAtOnce = hn::MaxLanes(hn::CappedTag<std::uint8_t, 64>());
     std::uint64_t free = 0;
-    for (std::size_t i = 0; i < 64; i += kStep) {
+    for (std::size_t i = 0; i < 64; i += kBytesAtOnce) {
         alignas(8) std::uint8_t bits[8] = {};
         const auto heights = hn::Load(kBytes, tile.heights.data() + i);
         const auto below = hn::Eq(hn::Min(heights, hn::Set(kBytes, most)), heights);
