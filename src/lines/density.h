@@ -90,7 +90,8 @@ class LineDensity {
 /// they cover no more than `most`: 1 as long as there is room, then less, smoothly.
 float width_scale(float share, float most);
 
-/// By how much lines get thinner where they are dense.
+/// By how much lines get thinner where they are dense, beside what they have lost already for what
+/// they are lines of (Segment::width_scale).
 struct LineThinning {
     LineDensity all;     ///< of all lines
     LineDensity direct;  ///< of those seen directly: what is seen in a mirror must not thin them

@@ -19,9 +19,11 @@ namespace ink {
 struct Segment {
     Vec2f a, b;  ///< ends, pixels
     LineType type = LineType::silhouette;
-    float strength = 1.0F;     ///< [0, 1]; below 1 for creases of small angle
-    float width_scale = 1.0F;  ///< of its style's width; below 1 where distance thins lines
-    float t = 0.0F;            ///< of the nearer side, distance along the ray as in Sample
+    float strength = 1.0F;  ///< [0, 1]; below 1 for creases of small angle
+    /// Of its style's width: below 1 where what it is a line of is far away and lines taper, or
+    /// small. Among many lines LineThinning takes more of it.
+    float width_scale = 1.0F;
+    float t = 0.0F;    ///< of the nearer side, distance along the ray as in Sample
     float gap = 0.0F;  ///< by how much the far side lies behind, scene units; where halos ask
     /// Geometry on the left and on the right of the way from a to b (y points down); equal for
     /// lines within one geometry.

@@ -80,7 +80,9 @@ struct Edges {
     /// Whether some lines are drawn with less than the width of their style for what they are lines
     /// of: something far away, or small.
     bool tempers_lines() const { return cues_depth() || small_things.any(); }
-    /// Makes a line so.
+    /// Makes a line so. The one place that asks what a line belongs to; what asks how dense lines
+    /// are about it, LineThinning, waits until all are found, and counts them as wide as this
+    /// leaves them.
     void temper(Segment& segment) const;
 
     const Pipeline& pipeline;

@@ -92,9 +92,10 @@ struct Settings {
     Length line_width{3.0, Length::Unit::px};
     Rgb8 line_color{0, 0, 0};
     std::vector<LineRule> line_rules;  ///< for single types and objects; later ones win
-    /// Share of an area that lines may cover; where they would cover more, they get thinner. 1:
-    /// they never do. Chosen by eye: on ribosomes, capsids and grains at 512 and 1024 pixels more
-    /// is a grey mush, less makes outlines thin that stand apart.
+    /// Share of an area (LineThinning), or of one small ball or stick (SmallThings), that lines may
+    /// cover; where they would cover more, they get thinner. 1: they never do. Chosen by eye: on
+    /// ribosomes, capsids and grains at 512 and 1024 pixels more is a grey mush, less makes
+    /// outlines thin that stand apart.
     double line_density = 0.4;
     LineBlend line_blend = LineBlend::automatic;
     std::optional<IdLevel> ids;
