@@ -1,56 +1,18 @@
-// The only file that knows Embree. Written for version 3.13; version 4 differs in the include path
-// and in where intersection flags are passed.
-#if __has_include(<embree4/rtcore.h>)
-#include <embree4/rtcore.h>
-#else
-#include <embree3/rtcore.h>
-#endif
-#include <fmt/format.h>
-
-#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstring>
-#include <string>
-#include <type_traits>
+#include <memory>
 #include <utility>
 #include <vector>
 
-#include "accel/shape_intersection.h"
+#include "accel/embree_geometry.h"
 #include "accel/tracer.h"
-#include "base/error.h"
 
-namespace ink {
+namespace ink::embree {
 
 namespace {
 
-struct DeviceDeleter {
-    void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
-};
-struct SceneDeleter {
-    void operator()(RTCScene scene) const { rtcReleaseScene(scene); }
-};
-struct GeometryDeleter {
-    void operator()(RTCGeometry geometry) const { rtcReleaseGeometry(geometry); }
-};
-using DeviceHandle = std::unique_ptr<std::remove_pointer_t<RTCDevice>, DeviceDeleter>;
-using SceneHandle = std::unique_ptr<std::remove_pointer_t<RTCScene>, SceneDeleter>;
-using GeometryHandle = std::unique_ptr<std::remove_pointer_t<RTCGeometry>, GeometryDeleter>;
-
-void check(RTCDevice device) {
-    switch (rtcGetDeviceError(device)) {
-        case RTC_ERROR_NONE: return;
-        case RTC_ERROR_OUT_OF_MEMORY:
-            throw Error(
-                "the scene does not fit into memory; load less of it or use a larger machine");
-        case RTC_ERROR_UNSUPPORTED_CPU:
-            throw Error("this processor is too old for Embree, which needs SSE2 at least");
-        default: throw Error("Embree could not build its hierarchy over the scene");
-    }
-}
-
 #if RTC_VERSION_MAJOR >= 4
-using QueryContext = RTCRayQueryContext;
 using OccludedArguments = RTCOccludedArguments;
 constexpr RTCSceneFlags kFilterWithQuery = RTC_SCENE_FLAG_FILTER_FUNCTION_IN_ARGUMENTS;
 void init(OccludedArguments& args) { rtcInitOccludedArguments(&args); }
@@ -60,7 +22,6 @@ void call(const Kernel& kernel, const std::int32_t* active, RTCScene scene, Pack
     kernel(active, scene, &packet, &args);
 }
 #else
-using QueryContext = RTCIntersectContext;
 using OccludedArguments = RTCIntersectContext;
 constexpr RTCSceneFlags kFilterWithQuery = RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION;
 void init(OccludedArguments& args) { rtcInitIntersectContext(&args); }
@@ -70,53 +31,6 @@ void call(const Kernel& kernel, const std::int32_t* active, RTCScene scene, Pack
     kernel(active, scene, &args, &packet);
 }
 #endif
-
-/// Of surfaces that coincide, the one of the lower object, then of the lower primitive is seen, as
-/// in accel/screen_kernels.h. So what lies within kTouching behind the nearest hit still counts.
-constexpr float kTouching = 5e-7F;
-
-/// The nearest hits so far, by ray ID.
-struct NearestHits {
-    Lanes<float> t;
-    Lanes<std::uint64_t> rank;
-
-    /// Whether a hit takes the place of what there is.
-    bool take(unsigned ray, float new_t, unsigned object, unsigned primitive) {
-        const auto lane = static_cast<int>(ray);
-        const std::uint64_t new_rank = static_cast<std::uint64_t>(object) << 32U | primitive;
-        const float gap = new_t - t[lane];
-        if (!(gap < -kTouching || (gap <= kTouching && new_rank < rank[lane]))) return false;
-        t[lane] = new_t;
-        rank[lane] = new_rank;
-        return true;
-    }
-};
-
-/// Copies, which are Embree's instances. It tells hits on them in terms of what they are copies of.
-struct Instances {
-    struct Copy {
-        Motion motion;
-        std::uint32_t first_primitive = 0;
-    };
-    unsigned first_id = 0;
-    std::vector<Copy> copies;
-
-    std::uint32_t primitive(unsigned instance, unsigned of_original) const {
-        if (instance == RTC_INVALID_GEOMETRY_ID) return of_original;
-        return copies[instance - first_id].first_primitive + of_original;
-    }
-    Vec3f normal(unsigned instance, Vec3f of_original) const {
-        if (instance == RTC_INVALID_GEOMETRY_ID) return of_original;
-        return to_float(copies[instance - first_id].motion.turn(to_double(of_original)));
-    }
-};
-
-/// What Embree hands back to the functions that it calls on the way.
-struct Query : QueryContext {
-    SurfaceHits* hits = nullptr;  ///< if every crossing is wanted; of the ray whose ID is the index
-    NearestHits* nearest = nullptr;  ///< if coincident surfaces are told apart
-    const Instances* instances = nullptr;
-};
 
 /// Embree's filter: writes a crossing down and goes on as if there were none.
 void record(const RTCFilterFunctionNArguments* args) {
@@ -154,164 +68,6 @@ void prefer_first(const RTCFilterFunctionNArguments* args) {
             args->valid[i] = 0;
         }
     }
-}
-
-/// Embree reads 16 bytes at every vertex, so the last of them must not end its page: shared buffers
-/// of 12-byte vertices need four bytes behind the end, which a vector's slack does not promise.
-GeometryHandle make_triangles(RTCDevice device, const Mesh& mesh) {
-    GeometryHandle geometry(rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE));
-    auto* vertices = static_cast<Vec3f*>(
-        rtcSetNewGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                                sizeof(Vec3f), mesh.vertices.size()));
-    check(device);
-    std::ranges::copy(mesh.vertices, vertices);
-    rtcSetSharedGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
-                               mesh.triangles.data(), 0, sizeof(Mesh::Triangle),
-                               mesh.triangles.size());
-    return geometry;
-}
-
-GeometryHandle make_spheres(RTCDevice device, const Spheres& spheres) {
-    static_assert(sizeof(Sphere) == 16, "Embree reads a sphere as four floats");
-    GeometryHandle geometry(rtcNewGeometry(device, RTC_GEOMETRY_TYPE_SPHERE_POINT));
-    rtcSetSharedGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4,
-                               spheres.spheres.data(), 0, sizeof(Sphere), spheres.spheres.size());
-    return geometry;
-}
-
-/// Exact surfaces are Embree's user geometry: it asks for the bounds of a primitive, and for its
-/// intersection with up to 16 rays at a time. `meet(shape, primitive)` gives what takes a ray and
-/// its range and returns a hit.
-template <class Shape, class Meet>
-struct UserShape {
-    static void bounds(const RTCBoundsFunctionArguments* args) {
-        const auto& shape = *static_cast<const Shape*>(args->geometryUserPtr);
-        const Bounds3f box = Meet::bounds(shape, args->primID);
-        // Embree leaves out a primitive whose lower bound lies above its upper one.
-        *args->bounds_o = {box.lower.x, box.lower.y, box.lower.z, 0.0F,
-                           box.upper.x, box.upper.y, box.upper.z, 0.0F};
-    }
-
-    static void intersect(const RTCIntersectFunctionNArguments* args) {
-        const auto& shape = *static_cast<const Shape*>(args->geometryUserPtr);
-        const Meet meet(shape, args->primID);
-        const auto& query = *static_cast<const Query*>(args->context);
-        SurfaceHits* const all = query.hits;
-        NearestHits* const nearest = query.nearest;
-        const unsigned instance = query.instID[0];
-        const std::uint32_t primitive = query.instances->primitive(instance, args->primID);
-        const unsigned width = args->N;
-        RTCRayN* rays = RTCRayHitN_RayN(args->rayhit, width);
-        RTCHitN* hits = RTCRayHitN_HitN(args->rayhit, width);
-        for (unsigned i = 0; i < width; ++i) {
-            if (args->valid[i] == 0) continue;
-            const ShapeRay ray{{RTCRayN_org_x(rays, width, i), RTCRayN_org_y(rays, width, i),
-                                RTCRayN_org_z(rays, width, i)},
-                               {RTCRayN_dir_x(rays, width, i), RTCRayN_dir_y(rays, width, i),
-                                RTCRayN_dir_z(rays, width, i)}};
-            if (all != nullptr) {
-                record_all(ray, meet, *args, (*all)[RTCRayN_id(rays, width, i)]);
-                continue;
-            }
-            float& far = RTCRayN_tfar(rays, width, i);
-            const auto hit = meet(ray, RTCRayN_tnear(rays, width, i), far);
-            if (!hit) continue;
-            const auto t = static_cast<float>(hit->t);
-            if (nearest == nullptr) {
-                far = t;
-            } else if (nearest->take(RTCRayN_id(rays, width, i), t, args->geomID, primitive)) {
-                far = t + kTouching;
-            } else {
-                continue;
-            }
-            const Vec3f normal = to_float(normalize(hit->normal));
-            RTCHitN_Ng_x(hits, width, i) = normal.x;
-            RTCHitN_Ng_y(hits, width, i) = normal.y;
-            RTCHitN_Ng_z(hits, width, i) = normal.z;
-            RTCHitN_u(hits, width, i) = 0.0F;
-            RTCHitN_v(hits, width, i) = 0.0F;
-            RTCHitN_primID(hits, width, i) = args->primID;
-            RTCHitN_geomID(hits, width, i) = args->geomID;
-            RTCHitN_instID(hits, width, i, 0) = instance;
-        }
-    }
-
-    static void record_all(const ShapeRay& ray, const Meet& meet,
-                           const RTCIntersectFunctionNArguments& args,
-                           std::vector<SurfaceHit>& hits) {
-        constexpr double kStep = 1e-9;  // in a scene of size 1
-        const auto& query = *static_cast<const Query*>(args.context);
-        const unsigned instance = query.instID[0];
-        double near = 0.0;
-        while (const auto hit = meet(ray, near, double{kInfinity})) {
-            const Vec3f normal = to_float(normalize(hit->normal));
-            hits.push_back({static_cast<float>(hit->t), query.instances->normal(instance, normal),
-                            0.0F, 0.0F, query.instances->primitive(instance, args.primID),
-                            args.geomID});
-            near = hit->t + kStep * (1.0 + hit->t);
-        }
-    }
-
-    static void occluded(const RTCOccludedFunctionNArguments* args) {
-        const auto& shape = *static_cast<const Shape*>(args->geometryUserPtr);
-        const Meet meet(shape, args->primID);
-        const unsigned width = args->N;
-        for (unsigned i = 0; i < width; ++i) {
-            if (args->valid[i] == 0) continue;
-            const ShapeRay ray{
-                {RTCRayN_org_x(args->ray, width, i), RTCRayN_org_y(args->ray, width, i),
-                 RTCRayN_org_z(args->ray, width, i)},
-                {RTCRayN_dir_x(args->ray, width, i), RTCRayN_dir_y(args->ray, width, i),
-                 RTCRayN_dir_z(args->ray, width, i)}};
-            float& far = RTCRayN_tfar(args->ray, width, i);
-            if (meet(ray, RTCRayN_tnear(args->ray, width, i), far)) far = -kInfinity;
-        }
-    }
-
-    static GeometryHandle make(RTCDevice device, const Shape& shape, std::size_t count) {
-        GeometryHandle geometry(rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER));
-        rtcSetGeometryUserPrimitiveCount(geometry.get(), static_cast<unsigned>(count));
-        rtcSetGeometryUserData(geometry.get(), const_cast<Shape*>(&shape));
-        rtcSetGeometryBoundsFunction(geometry.get(), bounds, nullptr);
-        rtcSetGeometryIntersectFunction(geometry.get(), intersect);
-        rtcSetGeometryOccludedFunction(geometry.get(), occluded);
-        return geometry;
-    }
-};
-
-struct MeetGlyph {
-    MeetGlyph(const Glyphs& glyphs, unsigned i) : placed(glyphs.shape, glyphs.placements[i]) {}
-    auto operator()(const ShapeRay& ray, double near, double far) const {
-        return placed.intersect(ray, near, far);
-    }
-    static Bounds3f bounds(const Glyphs& glyphs, unsigned i) {
-        return glyph_bounds(glyphs.shape, glyphs.placements[i]);
-    }
-    PlacedShape placed;
-};
-
-struct MeetHexahedron {
-    MeetHexahedron(const Hexahedra& solids, unsigned i) : corners(solids.corners[i]) {}
-    auto operator()(const ShapeRay& ray, double near, double far) const {
-        return intersect(corners, ray, near, far);
-    }
-    static Bounds3f bounds(const Hexahedra& solids, unsigned i) {
-        return hexahedron_bounds(solids.corners[i]);
-    }
-    const Hexahedra::Corners& corners;
-};
-
-GeometryHandle make_geometry(RTCDevice device, const Spheres& shape) {
-    return make_spheres(device, shape);
-}
-GeometryHandle make_geometry(RTCDevice device, const Mesh& shape) {
-    return make_triangles(device, shape);
-}
-GeometryHandle make_geometry(RTCDevice device, const Glyphs& shape) {
-    return UserShape<Glyphs, MeetGlyph>::make(device, shape, shape.placements.size());
-}
-GeometryHandle make_geometry(RTCDevice device, const Hexahedra& shape) {
-    return UserShape<Hexahedra, MeetHexahedron>::make(device, shape, shape.corners.size());
 }
 
 PacketWidth widest_native(RTCDevice device) {
@@ -596,9 +352,13 @@ static_assert(RTC_INVALID_GEOMETRY_ID == kNoObject);
 
 }  // namespace
 
+}  // namespace ink::embree
+
+namespace ink {
+
 std::unique_ptr<Tracer> make_embree_tracer(const Scene& scene, PacketWidth width,
                                            const ObjectFilter& wanted) {
-    return std::make_unique<EmbreeTracer>(scene, width, wanted);
+    return std::make_unique<embree::EmbreeTracer>(scene, width, wanted);
 }
 
 }  // namespace ink
