@@ -10,9 +10,11 @@
 #include <set>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "base/error.h"
+#include "inktrace/settings.h"
 
 namespace ink::test {
 namespace {
@@ -414,6 +416,16 @@ TEST(LineRules, AddUpAndReadColoursWithCommas) {
     Settings settings = with("line", "crease:color=255,0,0,width=2px");
     find_setting("line").set(settings, "all@2:opacity=0.25");
     EXPECT_EQ(get(settings, "line"), "crease:width=2px,color=#ff0000;all@2:opacity=0.25");
+}
+
+TEST(PublicSettings, CanBeAssignedToAfterTheyWereMovedFrom) {
+    inktrace::Settings settings;
+    settings.set("size", "20x10");
+    const inktrace::Settings taken = std::move(settings);
+    settings = taken;
+    EXPECT_EQ(settings.get("size"), "20x10");
+    settings = *&settings;
+    EXPECT_EQ(settings.get("size"), "20x10");
 }
 
 }  // namespace

@@ -1,6 +1,8 @@
 #pragma once
 
-/// The public interface of Inktrace. See examples/ for programs that use nothing else.
+/// The public interface of Inktrace: files are loaded into a Scene, a Renderer is made of it, which
+/// renders Pictures by Settings, and these are saved. See examples/ for programs that use nothing
+/// else.
 
 #include "inktrace/error.h"
 #include "inktrace/lines.h"

@@ -58,7 +58,7 @@ class Picture {
     /// Writes the lines as JSON (docs/formats.md); needs `curves`. Likewise.
     void save_lines(const std::filesystem::path& file) const;
 
-    struct Impl;
+    struct Impl;  ///< the library's own, as what makes a picture of it
     explicit Picture(std::unique_ptr<Impl> impl);
 
   private:
@@ -82,7 +82,7 @@ class Movie {
     /// The film appears, whole, with this; without it, not at all.
     void finish();
 
-    /// Whether the name is a film's.
+    /// Whether the name is a film's, by its extension.
     static bool is_movie(const std::filesystem::path& file);
 
   private:
@@ -103,7 +103,8 @@ struct RenderOptions {
     /// Called with the share that is done, in (0, 1], and the size of the whole in megapixels, from
     /// the rendering threads, one at a time.
     std::function<void(double share, double megapixels)> progress;
-    /// Once true, rendering stops within a tile's time and throws Error (cancelled).
+    /// Once true, rendering stops within a tile's time and throws Error (cancelled). Must outlive
+    /// the call; null: nothing stops it.
     const std::atomic<bool>* cancel = nullptr;
 };
 
@@ -130,7 +131,8 @@ struct Hit {
     std::vector<std::pair<std::string, std::string>> facts;
 };
 
-/// A scene made ready for rays. Build it once, render it often.
+/// A scene made ready for rays. Build it once, render it often; several threads may render with one
+/// at the same time.
 class Renderer {
   public:
     /// Throws Error (input) where the scene is empty or does not fit into memory.

@@ -61,7 +61,7 @@ struct LoadOptions {
     bool facts = false;
 };
 
-/// Molecules, meshes and spheres to draw together.
+/// Molecules, particles, meshes and shapes to draw together.
 class Scene {
   public:
     Scene();
@@ -83,17 +83,17 @@ class Scene {
     void add_spheres(std::string_view name, std::span<const float> centers_and_radii,
                      std::span<const std::uint8_t> colors = {});
 
-    /// Adds a triangle mesh: x, y, z of each vertex, three vertex indices of each triangle. Normals
-    /// are smooth but for creases. Throws Error (input) for an index
-    /// or a coordinate that is not valid.
+    /// Adds a triangle mesh: x, y, z of each vertex, three vertex indices of each triangle; `color`
+    /// is sRGB. Normals are smooth but for creases. Throws Error (input) for an index or a
+    /// coordinate that is not valid.
     void add_mesh(std::string_view name, std::span<const float> vertices,
                   std::span<const std::uint32_t> triangles,
                   std::array<std::uint8_t, 3> color = {204, 204, 204});
 
-    std::size_t primitive_count() const;
+    std::size_t primitive_count() const;  ///< atoms, particles, triangles, bonds, ...
     SceneCost cost() const;
 
-    struct Impl;
+    struct Impl;  ///< the library's own
     Impl& impl() { return *impl_; }
 
   private:

@@ -13,7 +13,7 @@ struct ValueForm {
     enum class Kind {
         text,    ///< anything, or one of `words`
         word,    ///< one of `words`
-        list,    ///< some of `words`, with commas between; none; all
+        list,    ///< some of `words`, with commas between, or "none", or "all"
         whole,   ///< a whole number from `least` to `most`
         number,  ///< from `least` to `most`
         length,  ///< a number from `least` to `most` pixels, or in pt, mm or %
@@ -57,14 +57,15 @@ class Settings {
     Settings& set(std::string_view name, std::string_view value);
     /// The value in the form that `set` reads; empty where it is chosen automatically.
     std::string get(std::string_view name) const;
-    /// Names and values of the settings that differ from their defaults.
+    /// Names and values that, set one after the other, give these settings again: the look, if
+    /// there is one, then what differs from it, else from the defaults.
     std::vector<std::pair<std::string, std::string>> changed() const;
 
     /// The same picture at `factor` times the size: lengths that are given in pixels, and those in
     /// points and millimetres, grow with it.
     Settings scaled(double factor) const;
 
-    struct Impl;
+    struct Impl;  ///< the library's own
     const Impl& impl() const { return *impl_; }
 
   private:

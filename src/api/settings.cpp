@@ -41,7 +41,7 @@ Settings::Settings() : impl_(std::make_unique<Impl>()) {}
 Settings::Settings(const Settings& other) : impl_(std::make_unique<Impl>(*other.impl_)) {}
 Settings::Settings(Settings&&) noexcept = default;
 Settings& Settings::operator=(const Settings& other) {
-    *impl_ = *other.impl_;
+    impl_ = std::make_unique<Impl>(*other.impl_);  // what was moved from may be assigned to
     return *this;
 }
 Settings& Settings::operator=(Settings&&) noexcept = default;
