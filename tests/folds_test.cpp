@@ -5,9 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <map>
 #include <optional>
 #include <random>
 #include <set>
@@ -15,9 +13,7 @@
 #include <utility>
 #include <vector>
 
-#include "lines/bridges.h"
-#include "lines/fold_joints.h"
-#include "lines/line_gaps.h"
+#include "line_pieces.h"
 #include "lines/segment_squares.h"
 #include "lines_world.h"
 
@@ -293,102 +289,6 @@ TEST(BrokenFold, IsMendedAlikeWhateverTheOrderOfItsPiecesAndByAnyNumberOfWorkers
     }
 }
 
-/// A straight line in pieces from cell to cell.
-std::vector<Segment> straight(Vec2f a, Vec2f b, LineType type = LineType::crease) {
-    const std::vector<Vec2f> points = plane::cut_by_cells(a, b, 1.0F);
-    std::vector<Segment> line;
-    for (std::size_t n = 1; n < points.size(); ++n) {
-        Segment piece;
-        piece.a = points[n - 1];
-        piece.b = points[n];
-        piece.type = piece.type_at_b = type;
-        piece.left = piece.right = piece.owner = 1;
-        piece.spans_cell = true;
-        line.push_back(piece);
-    }
-    return line;
-}
-
-std::vector<Segment> operator+(std::vector<Segment> a, const std::vector<Segment>& b) {
-    a.insert(a.end(), b.begin(), b.end());
-    return a;
-}
-
-std::vector<Segment> pieces_in_gaps(const std::vector<Segment>& lines, float width = 3.0F) {
-    const plane::SegmentSquares squares(lines);
-    return close_gaps({lines, lines.size(), squares}, {}, 1.0F, width);
-}
-
-/// From (10, 10) in a direction, with a gap between two places.
-std::vector<Segment> broken_line(double angle_deg, float from, float to) {
-    const Vec2f way{static_cast<float>(std::cos(angle_deg * kDegrees)),
-                    static_cast<float>(std::sin(angle_deg * kDegrees))};
-    const Vec2f start{10.3F, 10.2F};
-    return straight(start, start + way * from) + straight(start + way * 40.0F, start + way * to);
-}
-
-TEST(GapOfALine, IsClosedByPiecesWithinCellsFromEndToEnd) {
-    for (double angle = 0.0; angle < 90.0; angle += 7.0) {
-        const std::vector<Segment> lines = broken_line(angle, 15.0F, 25.0F);
-        const std::vector<Segment> pieces = pieces_in_gaps(lines);
-        double total = 0.0;
-        for (const Segment& piece : pieces) {
-            total += std::hypot(piece.b.x - piece.a.x, piece.b.y - piece.a.y);
-            const auto cell = [](float a, float b) { return std::floor((a + b) * 0.5F - 0.5F); };
-            for (const Vec2f end : {piece.a, piece.b}) {
-                EXPECT_NEAR(end.x, cell(piece.a.x, piece.b.x) + 1.0F, 0.5001F) << angle;
-                EXPECT_NEAR(end.y, cell(piece.a.y, piece.b.y) + 1.0F, 0.5001F) << angle;
-                const double off = (end.y - 10.2) * std::cos(angle * kDegrees) -
-                                   (end.x - 10.3) * std::sin(angle * kDegrees);
-                EXPECT_NEAR(off, 0.0, 0.01) << angle;
-            }
-        }
-        EXPECT_NEAR(total, 10.0, 0.01) << angle;
-        std::map<std::pair<float, float>, int> ends;
-        for (const Segment& s : lines + pieces) {
-            ++ends[{s.a.x, s.a.y}];
-            ++ends[{s.b.x, s.b.y}];
-        }
-        EXPECT_EQ(std::ranges::count(ends, 1, [](const auto& end) { return end.second; }), 2);
-    }
-}
-
-TEST(GapOfALine, StaysOpenWhereSomethingLiesBetweenOrTheEndsBelongToNoOneLine) {
-    const std::vector<Segment> lines = broken_line(20.0, 15.0F, 25.0F);
-    EXPECT_FALSE(pieces_in_gaps(lines).empty());
-    // Wider than four widths, and than eight pixels.
-    EXPECT_TRUE(pieces_in_gaps(lines, 2.0F).empty());
-    EXPECT_TRUE(pieces_in_gaps(broken_line(20.0, 15.0F, 28.0F)).empty());
-    // A bar, on both of whose sides the line ends.
-    const Vec2f end = lines[0].a + Vec2f{15.0F * 0.9397F, 15.0F * 0.3420F};
-    const auto across = [&](Vec2f p) {
-        return straight(p - Vec2f{-2.0F, 6.0F}, p + Vec2f{-2.0F, 6.0F}, LineType::silhouette);
-    };
-    EXPECT_TRUE(pieces_in_gaps(lines + across(end + Vec2f{5.0F, 2.0F})).empty());
-    EXPECT_TRUE(pieces_in_gaps(lines + across(end)).empty());
-    // Lines of two things; side by side; one that fades out.
-    std::vector<Segment> other = lines;
-    for (Segment& s : other) s.owner = s.a.x > 30.0F ? 2 : 1;
-    EXPECT_TRUE(pieces_in_gaps(other).empty());
-    std::vector<Segment> faint = lines;
-    for (Segment& s : faint) s.strength = s.a.x > 30.0F ? 0.2F : 1.0F;
-    EXPECT_TRUE(pieces_in_gaps(faint).empty());
-    EXPECT_TRUE(pieces_in_gaps(straight({10.3F, 10.2F}, {25.0F, 10.2F}) +
-                               straight({30.3F, 14.2F}, {45.0F, 14.2F}))
-                    .empty());
-}
-
-TEST(GapOfALine, IsClosedAlikeWhateverTheOrderOfTheSegments) {
-    std::vector<Segment> lines = broken_line(33.0, 15.0F, 24.0F);
-    const std::vector<Segment> pieces = pieces_in_gaps(lines);
-    std::ranges::shuffle(lines, std::mt19937(1));
-    const std::vector<Segment> again = pieces_in_gaps(lines);
-    ASSERT_EQ(pieces.size(), again.size());
-    for (std::size_t k = 0; k < pieces.size(); ++k) {
-        EXPECT_TRUE(pieces[k].a == again[k].a && pieces[k].b == again[k].b);
-    }
-}
-
 TEST(CrumbOfAFold, LeavesNothingThatHungOnItBehind) {
     // One fold ends on an outline, and hides next to nothing; on it another one ends, that hides
     // enough to be a stub, but not enough to stand alone.
@@ -416,114 +316,6 @@ TEST(CrumbOfAFold, LeavesNothingThatHungOnItBehind) {
     };
     EXPECT_GT(crumbs(1.5), 5);
     EXPECT_EQ(crumbs(30.0), 0);
-}
-
-// Joints
-
-FoldJoints joints_of(const std::vector<Segment>& lines, std::size_t first_joining) {
-    const std::size_t first = std::min(first_joining, lines.size());
-    const plane::SegmentSquares squares(std::span<const Segment>(lines).first(first));
-    return ease_joints({lines, first, squares}, {}, 1.0F, 3.0F);
-}
-
-/// As they are drawn.
-std::vector<Segment> eased(const std::vector<Segment>& lines, std::size_t first_joining) {
-    const FoldJoints joints = joints_of(lines, first_joining);
-    std::vector<Segment> drawn;
-    for (std::size_t k = 0; k < lines.size(); ++k) {
-        if (!std::ranges::binary_search(joints.dropped, k)) drawn.push_back(lines[k]);
-    }
-    return drawn + joints.curves;
-}
-
-/// The largest angle to the x axis, degrees.
-double steepest(const std::vector<Segment>& lines) {
-    double most = 0.0;
-    for (const Segment& s : lines) {
-        const double angle = std::atan2(std::abs(s.b.y - s.a.y), std::abs(s.b.x - s.a.x));
-        most = std::max(most, angle / kDegrees);
-    }
-    return most;
-}
-
-std::vector<std::pair<float, float>> ends_of_one(const std::vector<Segment>& lines) {
-    std::map<std::pair<float, float>, int> ends;
-    for (const Segment& s : lines) {
-        ++ends[{s.a.x, s.a.y}];
-        ++ends[{s.b.x, s.b.y}];
-    }
-    std::vector<std::pair<float, float>> found;
-    for (const auto& [place, count] : ends) {
-        if (count == 1) found.push_back(place);
-    }
-    return found;
-}
-
-std::vector<Segment> fold(Vec2f a, Vec2f b) { return straight(a, b, LineType::self_occlusion); }
-
-TEST(JointOfFolds, IsACurveWhereTheyLieBesideEachOther) {
-    const std::vector<Segment> folds =
-        fold({10.3F, 20.0F}, {40.0F, 20.0F}) + fold({41.0F, 22.0F}, {70.3F, 22.0F});
-    const std::vector<Segment> lines = folds + fold({40.0F, 20.0F}, {41.0F, 22.0F});
-    ASSERT_GT(steepest(lines), 60.0);
-    const std::vector<Segment> drawn = eased(lines, folds.size());
-    EXPECT_LT(steepest(drawn), 25.0);
-    EXPECT_EQ(ends_of_one(drawn), ends_of_one(lines));
-    for (const Segment& s : drawn) {
-        EXPECT_GE(std::min(s.a.y, s.b.y), 20.0F);
-        EXPECT_LE(std::max(s.a.y, s.b.y), 22.0F);
-    }
-}
-
-TEST(JointOfFolds, ThatRunPastEachOtherIsOneCurve) {
-    std::vector<Segment> folds =
-        fold({10.3F, 20.0F}, {43.0F, 20.0F}) + fold({40.0F, 22.0F}, {70.3F, 22.0F});
-    const std::vector<Segment> drawn = eased(folds, folds.size());
-    EXPECT_EQ(ends_of_one(drawn).size(), 2U);
-    EXPECT_LT(steepest(drawn), 25.0);
-    // Of two things, or farther apart than their strokes are wide.
-    for (Segment& s : folds) s.owner = s.a.y > 21.0F ? 2 : 1;
-    EXPECT_EQ(ends_of_one(eased(folds, folds.size())).size(), 4U);
-    EXPECT_EQ(ends_of_one(
-                  eased(fold({10.3F, 20.0F}, {43.0F, 20.0F}) + fold({40.0F, 25.0F}, {70.3F, 25.0F}),
-                        1000))
-                  .size(),
-              4U);
-}
-
-TEST(JointOfFolds, StaysACornerWhereTheLineGoesOnInAnotherDirection) {
-    const std::vector<Segment> folds = fold({10.3F, 20.0F}, {40.0F, 20.0F});
-    const std::vector<Segment> lines = folds + fold({40.0F, 20.0F}, {60.3F, 40.3F});
-    const FoldJoints joints = joints_of(lines, folds.size());
-    EXPECT_TRUE(joints.dropped.empty());
-    EXPECT_TRUE(joints.curves.empty());
-}
-
-TEST(JointOfFolds, HasNoHairWhereOneEndedPastIt) {
-    // The fold begins half a pixel before the place where the other one was joined to it.
-    const std::vector<Segment> folds = fold({10.3F, 20.0F}, {40.0F, 20.0F}) +
-                                       fold({42.0F, 21.2F}, {42.5F, 21.2F}) +
-                                       fold({42.5F, 21.2F}, {70.3F, 21.2F});
-    const std::vector<Segment> lines = folds + fold({40.0F, 20.0F}, {42.5F, 21.2F});
-    EXPECT_EQ(ends_of_one(lines).size(), 3U);
-    EXPECT_EQ(ends_of_one(eased(lines, folds.size())).size(), 2U);
-}
-
-TEST(EndOfAFold, DoesNotTurnBack) {
-    const std::vector<Segment> line = fold({10.3F, 20.0F}, {40.0F, 20.0F});
-    const auto left = [&](float length) {
-        const std::vector<Segment> hook = fold({40.0F, 20.0F}, {40.0F - length, 20.0F + length});
-        return eased(line + hook, 1000).size() - line.size();
-    };
-    EXPECT_EQ(left(4.0F), 0U);
-    EXPECT_GT(left(8.0F), 8U);
-    // A corner that does not turn back.
-    const std::vector<Segment> corner = line + fold({40.0F, 20.0F}, {44.0F, 24.0F});
-    EXPECT_EQ(eased(corner, 1000).size(), corner.size());
-    // What ends on another line is no loose end.
-    const std::vector<Segment> held =
-        line + fold({40.0F, 20.0F}, {36.0F, 24.0F}) + straight({36.0F, 24.0F}, {36.0F, 40.0F});
-    EXPECT_EQ(eased(held, 1000).size(), held.size());
 }
 
 TEST(DoubledFold, StaysWhereALineOfAnotherKindGoesOnAsIt) {
@@ -556,28 +348,6 @@ TEST(SegmentSquares, VisitJustTheSegmentsWhoseMiddlesAreNear) {
             EXPECT_EQ(visited.contains(k), near) << k << " within " << reach;
         }
     }
-}
-
-TEST(JointOfFolds, IsTheSameWhateverTheOrderOfTheSegments) {
-    std::vector<Segment> folds = fold({10.3F, 20.0F}, {43.0F, 20.0F}) +
-                                 fold({40.0F, 22.0F}, {70.3F, 22.0F}) +
-                                 fold({66.0F, 24.1F}, {90.3F, 24.1F});
-    const FoldJoints joints = joints_of(folds, folds.size());
-    ASSERT_FALSE(joints.curves.empty());
-    std::ranges::shuffle(folds, std::mt19937(1));
-    const FoldJoints again = joints_of(folds, folds.size());
-    EXPECT_EQ(joints.dropped.size(), again.dropped.size());
-    const auto places = [](const FoldJoints& of) {
-        std::set<std::array<float, 4>> found;
-        for (const Segment& s : of.curves) {
-            const bool swap = std::pair(s.b.x, s.b.y) < std::pair(s.a.x, s.a.y);
-            const Vec2f a = swap ? s.b : s.a;
-            const Vec2f b = swap ? s.a : s.b;
-            found.insert({a.x, a.y, b.x, b.y});
-        }
-        return found;
-    };
-    EXPECT_EQ(places(joints), places(again));
 }
 
 }  // namespace

@@ -1,13 +1,8 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
-#include <zlib.h>
 
 #include <algorithm>
-#include <array>
-#include <bit>
 #include <cmath>
-#include <cstring>
-#include <map>
 
 #include "base/error.h"
 #include "io/reader.h"
@@ -22,14 +17,9 @@ namespace {
 using test::data_file;
 using test::expect_refused;
 using test::positions;
+using test::radii;
 using test::spheres;
 using test::TemporaryFolder;
-
-std::vector<float> radii(const FileContents& contents) {
-    std::vector<float> out;
-    for (const Sphere& sphere : spheres(contents).spheres) out.push_back(sphere.radius);
-    return out;
-}
 
 const FieldSummary& field(const FileContents& contents, std::string_view name) {
     return *std::ranges::find(contents.fields, name, &FieldSummary::name);
@@ -298,149 +288,6 @@ TEST(LammpsReader, NamesTheLineThatIsWrong) {
     expect_refused(folder.write("e.dump", "hello\n"), ":1: expected an 'ITEM:' line");
 }
 
-// ---- VTK ----
-
-constexpr std::array<float, 6> kPlaces{1, 2, 3, -4, 5.5F, 6};
-constexpr std::array<double, 2> kRadii{0.5, 0.25};
-
-template <class T, std::size_t N>
-std::string raw(const std::array<T, N>& values, bool swap = false) {
-    std::string bytes;
-    for (const T value : values) {
-        auto one = std::bit_cast<std::array<char, sizeof(T)>>(value);
-        if (swap) std::ranges::reverse(one);
-        bytes.append(one.data(), one.size());
-    }
-    return bytes;
-}
-
-std::string number(std::uint32_t value, bool swap = false) {
-    return raw(std::array<std::uint32_t, 1>{value}, swap);
-}
-
-std::string base64(std::string_view bytes) {
-    constexpr std::string_view kDigits =
-        "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    std::string text;
-    for (std::size_t i = 0; i < bytes.size(); i += 3) {
-        std::uint32_t group = 0;
-        const std::size_t count = std::min<std::size_t>(bytes.size() - i, 3);
-        for (std::size_t k = 0; k < 3; ++k) {
-            group = group << 8 | (k < count ? static_cast<unsigned char>(bytes[i + k]) : 0U);
-        }
-        for (std::size_t k = 0; k < 4; ++k) {
-            text += k <= count ? kDigits[group >> (18 - 6 * k) & 63U] : '=';
-        }
-    }
-    return text;
-}
-
-/// Blocks of `block` bytes, each deflated on its own: header and data.
-std::pair<std::string, std::string> deflated(std::string_view bytes, std::size_t block) {
-    const std::size_t blocks = (bytes.size() + block - 1) / block;
-    std::string header = number(static_cast<std::uint32_t>(blocks)) +
-                         number(static_cast<std::uint32_t>(block)) +
-                         number(static_cast<std::uint32_t>(bytes.size() % block));
-    std::string data;
-    for (std::size_t b = 0; b < blocks; ++b) {
-        const std::string_view part = bytes.substr(b * block, block);
-        std::string packed(compressBound(part.size()), '\0');
-        uLongf size = packed.size();
-        compress(reinterpret_cast<Bytef*>(packed.data()), &size,
-                 reinterpret_cast<const Bytef*>(part.data()), part.size());
-        header += number(static_cast<std::uint32_t>(size));
-        data += packed.substr(0, size);
-    }
-    return {header, data};
-}
-
-std::string vtk(std::string_view type, std::string_view attributes, std::string_view format,
-                std::string_view radii_text, std::string_view places_text,
-                std::string_view appended = {}, std::string_view count = "2") {
-    return fmt::format(
-        "<?xml version=\"1.0\"?>\n<VTKFile type=\"{0}\" {1}>\n<{0}><Piece NumberOfPoints=\"{6}\">\n"
-        "<PointData><DataArray type=\"Float64\" Name=\"radius\" {2}>{3}</DataArray></PointData>\n"
-        "<Points><DataArray type=\"Float32\" NumberOfComponents=\"3\" "
-        "{4}>{5}</DataArray></Points>\n"
-        "</Piece></{0}>{7}</VTKFile>\n",
-        type, attributes, format, radii_text, format, places_text, count, appended);
-}
-
-TEST(VtkReader, ReadsTheSamePointsFromEveryEncoding) {
-    const TemporaryFolder folder;
-    const std::string r = raw(kRadii);
-    const std::string p = raw(kPlaces);
-    const auto [r_head, r_data] = deflated(r, 10);
-    const auto [p_head, p_data] = deflated(p, 10);
-    constexpr std::string_view kLittle = "byte_order=\"LittleEndian\"";
-    const std::string zlib = std::string(kLittle) + " compressor=\"vtkZLibDataCompressor\"";
-    const auto appended = [&](std::string_view encoding, const std::string& radii_bytes,
-                              const std::string& places_bytes, std::string_view attributes) {
-        std::string text = vtk("PolyData", attributes, "format=\"appended\" offset=\"0\"", "", "",
-                               fmt::format("<AppendedData encoding=\"{}\">\n  _", encoding));
-        const std::string second = fmt::format("offset=\"{}\"", radii_bytes.size());
-        text.replace(text.rfind("offset=\"0\""), 10, second);
-        const std::size_t end = text.find("</VTKFile>");
-        return text.insert(end, radii_bytes + places_bytes + "\n</AppendedData>");
-    };
-    const std::map<std::string, std::string> files{
-        {"ascii.vtp", vtk("PolyData", kLittle, "format=\"ascii\"", "0.5\n 0.25", "1 2 3 -4 5.5 6")},
-        {"ascii.vtu",
-         vtk("UnstructuredGrid", kLittle, "format=\"ascii\"", "0.5 0.25", "1 2 3 -4 +5.5 6e0")},
-        {"base64.vtp",
-         vtk("PolyData", kLittle, "format=\"binary\"", fmt::format("\n{}", base64(number(16) + r)),
-             base64(number(24) + p) + "\n")},
-        {"zlib.vtp", vtk("PolyData", zlib, "format=\"binary\"", base64(r_head) + base64(r_data),
-                         base64(p_head) + base64(p_data))},
-        {"raw.vtp", appended("raw", number(16) + r, number(24) + p, kLittle)},
-        {"big.vtp", appended("raw", number(16, true) + raw(kRadii, true),
-                             number(24, true) + raw(kPlaces, true), "byte_order=\"BigEndian\"")},
-        {"rawzlib.vtp", appended("raw", r_head + r_data, p_head + p_data, zlib)},
-        {"appended64.vtp",
-         appended("base64", base64(number(16) + r), base64(number(24) + p), kLittle)},
-        {"wide.vtp", appended("raw", raw(std::array<std::uint64_t, 1>{16}) + r,
-                              raw(std::array<std::uint64_t, 1>{24}) + p,
-                              std::string(kLittle) + " header_type=\"UInt64\"")}};
-    for (const auto& [name, text] : files) {
-        SCOPED_TRACE(name);
-        const FileContents contents = read_file(folder.write(name, text));
-        EXPECT_EQ(positions(contents), (std::vector<Vec3d>{{1, 2, 3}, {-4, 5.5, 6}}));
-        EXPECT_EQ(radii(contents), (std::vector<float>{0.5F, 0.25F}));
-    }
-}
-
-TEST(VtkReader, RefusesDataThatDoNotHoldWhatIsAnnounced) {
-    const TemporaryFolder folder;
-    const auto ascii = [&](std::string_view radii_text, std::string_view count) {
-        return folder.write(
-            "a.vtp", vtk("PolyData", "", "format=\"ascii\"", radii_text, "1 2 3 4 5 6", {}, count));
-    };
-    expect_refused(ascii("1  ", "2"), "array 'radius' has 1 of 2 numbers");
-    expect_refused(ascii("1 x", "2"), "no number in place 2");
-    expect_refused(ascii("1 1", "999999999"), "fewer numbers than it announces");
-    expect_refused(ascii("1 1", "-3"), "a piece has '-3' points");
-    expect_refused(ascii("1 1", "0"), "holds no particles");
-    expect_refused(
-        folder.write("b.vtp", vtk("PolyData", "", "format=\"appended\" offset=\"99\"", "", "")),
-        "begins after the end of the data");
-    expect_refused(folder.write("c.vtp", "<VTKFile type=\"PolyData\"><PolyData>"),
-                   "was it written");
-    expect_refused(folder.write("d.vtp", vtk("ImageData", "", "format=\"ascii\"", "1 1", "")),
-                   "holds 'ImageData'");
-    expect_refused(folder.write("e.vtp", vtk("PolyData", "compressor=\"vtkLZ4DataCompressor\"",
-                                             "format=\"binary\"", "", "")),
-                   "compressed by 'vtkLZ4DataCompressor'");
-}
-
-TEST(VtkReader, SetsNoMemoryAsideForBlocksThatLie) {
-    const TemporaryFolder folder;
-    const std::string lie =
-        base64(number(1) + number(0xF0000000U) + number(0) + number(8)) + base64("12345678");
-    const auto file = folder.write("a.vtp", vtk("PolyData", "compressor=\"vtkZLibDataCompressor\"",
-                                                "format=\"binary\"", lie, lie, {}, "300000000"));
-    expect_refused(file, "block of no sense");
-}
-
 // ---- PLY points ----
 
 TEST(PlyReader, DrawsPointsWithTheirRadiusAndColour) {
@@ -531,130 +378,6 @@ TEST(LammpsReader, WarnsOfABoxThatIsNoneWhereNothingNeedsIt) {
                      "DUMMY\n0 1\nITEM: ATOMS x y z radius\n1 2 3 1\n"));
     ASSERT_EQ(contents.warnings.size(), 1U);
     EXPECT_TRUE(contents.warnings[0].starts_with("Line 7: the bounds of the box are not numbers"));
-}
-
-// ---- Glyphs ----
-
-const Glyphs& glyphs(const FileContents& contents) {
-    return std::get<Glyphs>(contents.objects.at(0).shape);
-}
-
-FileContents read_glyphs(const std::filesystem::path& file, Glyph glyph, std::string field = {}) {
-    return read_file(file, {.data = {.glyph = glyph, .glyph_field = std::move(field)}});
-}
-
-/// Half axes of particle `i`: x, y, z of each.
-std::vector<float> axes(const FileContents& contents, std::size_t i = 0) {
-    const Placement& p = glyphs(contents).placements.at(i);
-    return {p.x_axis.x, p.x_axis.y, p.x_axis.z, p.y_axis.x, p.y_axis.y,
-            p.y_axis.z, p.z_axis.x, p.z_axis.y, p.z_axis.z};
-}
-
-void expect_near(const std::vector<float>& a, const std::vector<float>& b) {
-    ASSERT_EQ(a.size(), b.size());
-    for (std::size_t k = 0; k < a.size(); ++k) EXPECT_NEAR(a[k], b[k], 1e-6) << k;
-}
-
-TEST(ParticleGlyphs, HaveTheColumnsOfTheDeformationGradientAsAxes) {
-    const TemporaryFolder folder;
-    const auto file = folder.write(
-        "a.csv", "x,y,z,r,F11,F12,F13,F21,F22,F23,F31,F32,F33\n5,6,7,2,1,2,3,4,5,6,7,8,10\n");
-    const FileContents contents = read_glyphs(file, Glyph::box);
-    EXPECT_EQ(glyphs(contents).shape.kind, GlyphKind::box);
-    EXPECT_EQ(axes(contents), (std::vector<float>{2, 8, 14, 4, 10, 16, 6, 12, 20}));
-    EXPECT_EQ(contents.objects[0].frame.to_world(glyphs(contents).placements[0].origin),
-              (Vec3d{5, 6, 7}));
-    EXPECT_EQ(glyphs(read_glyphs(file, Glyph::ellipsoid)).shape.kind, GlyphKind::ellipsoid);
-}
-
-TEST(ParticleGlyphs, KnowTensorsByTheirColumnsInAnyOrderAndSpelling) {
-    const TemporaryFolder folder;
-    const std::vector<float> stretched{2, 0, 0, 0, 3, 0, 0, 0, 4};
-    const auto expect = [&](std::string_view name, std::string_view text) {
-        SCOPED_TRACE(text);
-        expect_near(axes(read_glyphs(folder.write(name, text), Glyph::box)), stretched);
-    };
-    expect("a.csv", "x,y,z,r,f33,f22,f11,f12,f13,f21,f23,f31,f32\n0,0,0,1,4,3,2,0,0,0,0,0,0\n");
-    expect("b.csv", "x,y,z,r,F_xx,F_yy,F_zz,F_xy,F_yz,F_xz\n0,0,0,1,2,3,4,0,0,0\n");
-    expect("c.csv", "x,y,z,r,F:0,F:1,F:2,F:3,F:4,F:5,F:6,F:7,F:8\n0,0,0,1,2,0,0,0,3,0,0,0,4\n");
-    expect("d.ply",
-           "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\n"
-           "property float z\nproperty float radius\nproperty float Fxx\nproperty float Fyy\n"
-           "property float Fzz\nproperty float Fxy\nproperty float Fyz\nproperty float Fxz\n"
-           "end_header\n0 0 0 1 2 3 4 0 0 0\n");
-}
-
-TEST(ParticleGlyphs, InThePlaneKeepTheirThickness) {
-    const TemporaryFolder folder;
-    const auto file = folder.write("a.csv", "x,y,z,r,F11,F12,F21,F22\n0,0,0,2,1,2,3,4\n");
-    EXPECT_EQ(axes(read_glyphs(file, Glyph::box)), (std::vector<float>{2, 6, 0, 4, 8, 0, 0, 0, 2}));
-}
-
-TEST(ParticleGlyphs, AreTurnedByQuaternionsAndHaveTheDiametersOfLammps) {
-    const TemporaryFolder folder;
-    // A quarter turn about z: x goes to y, y to -x. The quaternion need not be of unit length.
-    const auto file = folder.write(
-        "a.dump",
-        "ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n1\nITEM: BOX BOUNDS pp pp pp\n0 1\n0 1\n0 1\n"
-        "ITEM: ATOMS id x y z quatw quati quatj quatk shapex shapey shapez\n"
-        "1 0 0 0 2 0 0 2 2 4 6\n");
-    const FileContents contents = read_glyphs(file, Glyph::ellipsoid);
-    expect_near(axes(contents), {0, 1, 0, -2, 0, 0, 0, 0, 3});
-    EXPECT_TRUE(contents.warnings.empty());
-}
-
-TEST(ParticleGlyphs, TakeTheFieldThatIsNamed) {
-    const TemporaryFolder folder;
-    const auto file = folder.write("a.csv",
-                                   "x,y,z,r,s1,c_a[1],c_a[2],c_a[3],c_a[4],c_a[5],c_a[6]\n"
-                                   "0,0,0,1,7,2,3,4,0,0,0\n");
-    expect_near(axes(read_glyphs(file, Glyph::box, "c_a")), {2, 0, 0, 0, 3, 0, 0, 0, 4});
-    const auto named = [](const char* field) {
-        return ReadOptions{.data = {.glyph = Glyph::box, .glyph_field = field}};
-    };
-    expect_refused(file, "has 1 components", named("s1"));
-    expect_refused(file, "there is no field 'F'", named("F"));
-}
-
-TEST(ParticleGlyphs, OfVtkAreArraysOfNineComponents) {
-    const TemporaryFolder folder;
-    const auto file =
-        folder.write("a.vtp",
-                     R"(<VTKFile type="PolyData"><PolyData><Piece NumberOfPoints="1"><Points>
-<DataArray type="Float32" NumberOfComponents="3" format="ascii">1 2 3</DataArray></Points><PointData>
-<DataArray type="Float32" Name="F" NumberOfComponents="9" format="ascii">1 2 3 4 5 6 7 8 10</DataArray>
-<DataArray type="Float32" Name="Orientation" NumberOfComponents="4" format="ascii">0 0 1 1</DataArray>
-</PointData></Piece></PolyData></VTKFile>)");
-    const auto read = [&](std::string field) {
-        return axes(read_file(
-            file, {.data = {.radius = "1", .glyph = Glyph::box, .glyph_field = std::move(field)}}));
-    };
-    EXPECT_EQ(read("F"), (std::vector<float>{1, 4, 7, 2, 5, 8, 3, 6, 10}));
-    expect_near(read("Orientation"), {0, 1, 0, -1, 0, 0, 0, 0, 1});
-}
-
-TEST(ParticleGlyphs, WithoutVolumeAreLeftOut) {
-    const TemporaryFolder folder;
-    const std::string names = "x,y,z,r,Fxx,Fyy,Fzz,Fxy,Fyz,Fxz\n";
-    const auto file = folder.write("a.csv", names +
-                                                "0,0,0,1,1,1,1,0,0,0\n1,0,0,1,1,1,0,0,0,0\n"
-                                                "2,0,0,1,nan,1,1,0,0,0\n3,0,0,1,1e30,1,1,0,0,0\n");
-    const FileContents contents = read_glyphs(file, Glyph::ellipsoid);
-    EXPECT_EQ(glyphs(contents).placements.size(), 1U);
-    ASSERT_EQ(contents.warnings.size(), 1U);
-    EXPECT_NE(contents.warnings[0].find("3 of 4 particles"), std::string::npos);
-    expect_refused(folder.write("b.csv", names + "0,0,0,1,0,0,0,0,0,0\n"),
-                   "no particle has a finite place and a positive",
-                   {.data = {.glyph = Glyph::box}});
-}
-
-TEST(ParticleGlyphs, WithoutATensorAreAllAlikeAndSaySo) {
-    const TemporaryFolder folder;
-    const FileContents contents =
-        read_glyphs(folder.write("a.csv", "x,y,z,r\n0,0,0,2\n"), Glyph::box);
-    EXPECT_EQ(axes(contents), (std::vector<float>{2, 0, 0, 0, 2, 0, 0, 0, 2}));
-    ASSERT_EQ(contents.warnings.size(), 1U);
-    EXPECT_NE(contents.warnings[0].find("all glyphs are alike"), std::string::npos);
 }
 
 }  // namespace

@@ -26,6 +26,12 @@ inline std::vector<Vec3d> positions(const FileContents& contents) {
     return out;
 }
 
+inline std::vector<float> radii(const FileContents& contents) {
+    std::vector<float> out;
+    for (const Sphere& sphere : spheres(contents).spheres) out.push_back(sphere.radius);
+    return out;
+}
+
 /// What a reader says of a file that it refuses.
 inline std::string refusal(const std::filesystem::path& file, const ReadOptions& options = {}) {
     try {
