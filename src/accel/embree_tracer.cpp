@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstring>
@@ -166,7 +167,9 @@ class EmbreeTracer final : public Tracer {
     EmbreeTracer(const Scene& scene, PacketWidth width, const ObjectFilter& wanted)
         : device_(rtcNewDevice(nullptr)) {
         check(device_.get());
-        width_ = width == PacketWidth::widest ? widest_native(device_.get()) : width;
+        // Wider ones Embree takes apart, and traces those rays as well that are not active.
+        width_ = widest_native(device_.get());
+        if (width != PacketWidth::widest) width_ = std::min(width_, width);
         scene_.reset(rtcNewScene(device_.get()));
         // Watertight between triangles: bisection homes in on their edges, where a crack would show
         // what lies behind as a jump in depth.
