@@ -14,6 +14,7 @@
 
 #include "accel/screen_lanes-inl.h"
 #include "accel/screen_tests-inl.h"
+#include "base/pack_lanes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace ink::HWY_NAMESPACE {
@@ -228,9 +229,9 @@ struct Pairs {
             const auto at = hn::Add(load(raster.window.offset, i), hn::Set(kWords, first));
             const auto all =
                 hn::Add(hn::ShiftLeft<4>(at), hn::Set(kWords, static_cast<std::uint32_t>(lane)));
-            const auto compressed = hn::Compress(all, hn::RebindMask(kWords, live));
-            hn::StoreU(compressed, kWords, list[0].data() + count);
-            count += static_cast<std::size_t>(std::popcount(bits_of(live)));
+            const LanePacker packer(live);
+            hn::StoreU(packer.pack(kWords, all), kWords, list[0].data() + count);
+            count += packer.count();
         }
     }
 

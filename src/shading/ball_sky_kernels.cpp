@@ -14,6 +14,7 @@
 #include <hwy/highway.h>
 
 #include "base/lanes-inl.h"
+#include "base/pack_lanes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace ink::ball_kernels::HWY_NAMESPACE {
@@ -78,10 +79,15 @@ HWY_INLINE void rise(const Surroundings& surroundings, Vec3f point, Vec3f n, Dis
             const auto up = sum_of_products(set(n.x), x, set(n.y), y, set(n.z), z);
             const auto above =
                 hn::And(hn::Gt(hn::Add(up, size), set(height)), hn::Gt(size, hn::Zero(kFloats)));
-            hn::CompressBlendedStore(hn::Sub(x, set(point.x)), above, kFloats, to_x + count);
-            hn::CompressBlendedStore(hn::Sub(y, set(point.y)), above, kFloats, to_y + count);
-            hn::CompressBlendedStore(hn::Sub(z, set(point.z)), above, kFloats, to_z + count);
-            count += hn::CompressBlendedStore(size, above, kFloats, to_radius + count);
+            const LanePacker packer(above);
+            const auto put = [&](Number values, float* to) {
+                hn::StoreU(packer.pack(kFloats, values), kFloats, to + count);
+            };
+            put(hn::Sub(x, set(point.x)), to_x);
+            put(hn::Sub(y, set(point.y)), to_y);
+            put(hn::Sub(z, set(point.z)), to_z);
+            put(size, to_radius);
+            count += packer.count();
         }
     }
     // Far below any horizon.
