@@ -190,6 +190,12 @@ void lay_mean_ink(const PixelSums& sums, Color line, ColorPacket& colors) {
     }
 }
 
+bool has_ink(const Lanes<float>& strength) {
+    float most = 0.0F;
+    for (int i = 0; i < kLanes; ++i) most = std::max(most, strength[i]);
+    return most > 0.0F;
+}
+
 ColorPacket constant(Color color, float alpha) {
     return {Lanes<float>::filled(color.r * alpha), Lanes<float>::filled(color.g * alpha),
             Lanes<float>::filled(color.b * alpha), Lanes<float>::filled(alpha)};
@@ -316,7 +322,8 @@ Color Film::in_blend_space(Rgb8 color) const {
 void Film::add(const ColorPacket& shaded, const Lanes<float>& strength, PixelSums& sums) const {
     const ColorPacket& below = settings_.compose == Compose::lines ? paper_ : shaded;
     ColorPacket blend_space = below;
-    if (settings_.blend == BlendSpace::display) encode(blend_space);
+    // What no line covers needs no blending.
+    if (settings_.blend == BlendSpace::display && has_ink(strength)) encode(blend_space);
     accumulate(below, blend_space, strength, sums);
     ++sums.samples;
 }
@@ -327,6 +334,7 @@ void Film::put(int x, int y, const PixelSums& sums) {
     for (Lanes<float>* channel : {&colors.r, &colors.g, &colors.b, &colors.a}) {
         for (float& value : *channel) value *= weight;
     }
+    if (!has_ink(sums.ink)) return put(x, y, colors);
     if (settings_.blend == BlendSpace::display) encode(colors);
     lay_mean_ink(sums, line_, colors);
     Block block;
