@@ -19,6 +19,7 @@
 #include "camera/camera.h"
 #include "io/reader.h"
 #include "readers.h"
+#include "render/draft.h"
 #include "render/render.h"
 #include "scenes.h"
 #include "session.h"
@@ -66,6 +67,7 @@ struct Result {
 struct Variant {
     std::string name;
     Settings settings;
+    double share = 1.0;  ///< of a ray along a pixel's side; below 1 it is a draft
 };
 
 /// What is measured of a scene.
@@ -79,9 +81,9 @@ struct Plan {
 
 std::vector<Variant> variants(const Plan& plan) {
     std::vector<Variant> list;
-    const auto add = [&](std::string name, const Settings& settings) {
+    const auto add = [&](std::string name, const Settings& settings, double share = 1.0) {
         if (!plan.only.empty() && std::ranges::find(plan.only, name) == plan.only.end()) return;
-        list.push_back({std::move(name), settings});
+        list.push_back({std::move(name), settings, share});
     };
     Settings plain;
     plain.size = {plan.side, plan.side};
@@ -105,6 +107,11 @@ std::vector<Variant> variants(const Plan& plan) {
         lines.lines = LineTypes::all();
         add(fmt::format("edges, {} px, all types", width), lines);
     }
+    Settings draft = plain;
+    draft.lines = LineTypes::all();
+    add("draft, all types", draft, 0.25);
+    draft.threads = plan.threads;
+    add(fmt::format("draft, all types, {} threads", plan.threads), draft, 0.25);
     Settings soft = plain;
     soft.lines = LineTypes::usual();
     soft.line_width.value = 2.0;
@@ -180,7 +187,11 @@ Result measure(const NamedScene& named, const Plan& plan) {
             const int tries = list[k].settings.method == Method::edges ? 2 : 1;
             for (int i = 0; i < tries; ++i) {
                 RenderStats stats;
-                render(scene, *tracer, list[k].settings, {}, {}, &stats);
+                if (list[k].share < 1.0) {
+                    render_draft(scene, *tracer, list[k].settings, list[k].share, {}, &stats);
+                } else {
+                    render(scene, *tracer, list[k].settings, {}, {}, &stats);
+                }
                 if (stats.render_ms < best.render_ms) best = stats;
             }
             if (round == 0) continue;  // warms caches and the clock
