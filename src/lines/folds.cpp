@@ -265,14 +265,23 @@ class FoldMender {
             if (ends_[k].reached != kNone || ends_[n].reached != kNone) continue;
             std::vector<Vec2f> path = plane::curve_between(ends_[k].point, ends_[k].way,
                                                            ends_[n].point, ends_[n].way, spacing_);
-            probe_.enter(ends_[k].point, most, 0);
-            if (!probe_.is_steep(path, lines_[ends_[k].fold].owner, 0)) continue;
+            if (!is_steep(path, ends_[k], most)) continue;
             ends_[k].path = std::move(path);
             ends_[k].reached = ends_[n].fold;
             ends_[n].reached = ends_[k].fold;
             ends_[k].leapt = ends_[n].leapt = true;
             ends_[n].path.clear();
         }
+    }
+
+    /// Whether the surface is steep all along a path from an end on.
+    bool is_steep(std::span<const Vec2f> path, const LooseEnd& end, float reach) const {
+        bool steep = false;
+        loop_(1, [&](std::size_t, std::size_t worker) {
+            probe_.enter(end.point, reach, worker);
+            steep = probe_.is_steep(path, lines_[end.fold].owner, worker);
+        });
+        return steep;
     }
 
     /// Whether each lies ahead of the other, and has the nearer surface on the same side.

@@ -1,5 +1,6 @@
 #include "render/line_search.h"
 
+#include "base/team.h"
 #include "render/line_mask.h"
 #include "render/mend_lines.h"
 
@@ -108,9 +109,9 @@ LineSearch::LineSearch(const Edges& edges, WorkLoop& loop)
 
 /// Calls of the loop's body, but for work beside.
 std::size_t LineSearch::items() const {
-    const std::size_t mends = edges_.mends_lines() ? 1 : 0;
     const std::size_t ridges = ridges_ ? ridges_->strips() + ridges_->bands() : 0;
-    return seeing_.size() + ridges + mends + (fringes_.empty() ? 0 : seeing_.size()) +
+    const auto threads = static_cast<std::size_t>(loop_.threads());
+    return seeing_.size() + ridges + threads + (fringes_.empty() ? 0 : seeing_.size()) +
            empty_.size();
 }
 
@@ -160,22 +161,16 @@ void LineSearch::finish_fringe(std::size_t tile) const {
 
 /// Mending is for one thread for most of the time. The others find ridges, put the pixels to which
 /// lines of several tiles add, and fill the empty tiles. What asks for rays and what fills tiles
-/// share the finders: in loops within a loop, too, a thread is the same worker.
+/// share the finders, of which each thread has its own.
 void LineSearch::mend(const SideWork& beside) {
     if (ridges_) {
         loop_.run(ridges_->strips(),
                   [&](std::size_t k, std::size_t worker) { ridges_->trace_strip(k, worker); });
     }
-    const std::size_t mends = edges_.mends_lines() ? 1 : 0;
-    if (mends > 0) end_search();
-    LineMender mender(edges_, finders_, found_.tiles, found_.toned);
     const std::size_t bands = ridges_ ? ridges_->bands() : 0;
     const std::size_t fringes = fringes_.empty() ? 0 : seeing_.size();
-    const std::size_t items = mends + bands + fringes + empty_.size() + beside.items;
-    loop_.run(items, [&](std::size_t i, std::size_t worker) {
-        if (i < mends) {
-            mender.mend();
-        } else if (i -= mends; i < bands) {
+    const auto do_beside = [&](std::size_t i, std::size_t worker) {
+        if (i < bands) {
             ridges_->search_band(i, worker);
         } else if (i -= bands; i < fringes) {
             finish_fringe(seeing_[i]);
@@ -184,6 +179,17 @@ void LineSearch::mend(const SideWork& beside) {
         } else {
             beside.body(i - empty_.size());
         }
+    };
+    Team team(
+        bands + fringes + empty_.size() + beside.items,
+        [&](std::size_t i, std::size_t worker) { loop_.item([&] { do_beside(i, worker); }); });
+    LineMender mender(edges_, finders_, found_.tiles, found_.toned, team);
+    const bool mends = edges_.mends_lines();
+    if (mends) end_search();
+    loop_.run(static_cast<std::size_t>(loop_.threads()), [&](std::size_t k, std::size_t worker) {
+        team.work(k, worker, [&] {
+            if (mends) mender.mend();
+        });
     });
     serial_ += mender.stats();
 }

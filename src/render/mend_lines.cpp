@@ -4,7 +4,6 @@
 #include <set>
 #include <utility>
 
-#include "base/parallel.h"
 #include "lines/fold_joints.h"
 #include "lines/line_gaps.h"
 #include "lines/tones.h"
@@ -60,10 +59,9 @@ void LineMender::mend_folds() {
                                finder->enter({low.x, low.y, high.x, high.y});
                            }});
     }
-    repairs_ = ink::mend_folds(lines_, *squares_, edges_.viewpoint, spacing(), width(), workers,
-                               [&](std::size_t count, const auto& body) {
-                                   parallel_for(count, static_cast<int>(workers.size()), body);
-                               });
+    repairs_ =
+        ink::mend_folds(lines_, *squares_, edges_.viewpoint, spacing(), width(), workers,
+                        [&](std::size_t count, const auto& body) { team_.loop(count, body); });
 }
 
 void LineMender::close_gaps() {

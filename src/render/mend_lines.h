@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "base/team.h"
 #include "lines/folds.h"
 #include "lines/segment_squares.h"
 #include "render/edges.h"
@@ -18,9 +19,10 @@ class LineMender {
   public:
     /// One finder a thread, which have ended their search, for rays; they count these.
     LineMender(const Edges& edges, const std::vector<std::unique_ptr<LineFinder>>& finders,
-               std::vector<TileLines>& found, std::vector<std::vector<Segment>>& toned)
-        : edges_(edges), finders_(finders), found_(found), toned_(toned) {}
+               std::vector<TileLines>& found, std::vector<std::vector<Segment>>& toned, Team& team)
+        : edges_(edges), finders_(finders), found_(found), toned_(toned), team_(team) {}
 
+    /// For the team's leader.
     void mend();
 
     const RenderStats& stats() const { return stats_; }
@@ -45,6 +47,7 @@ class LineMender {
     const std::vector<std::unique_ptr<LineFinder>>& finders_;
     std::vector<TileLines>& found_;
     std::vector<std::vector<Segment>>& toned_;
+    Team& team_;
     std::vector<Segment> lines_;  ///< seen directly, but not between faces; then what joins them
     std::vector<Place> places_;   ///< of the first ones
     std::optional<plane::SegmentSquares> squares_;  ///< likewise

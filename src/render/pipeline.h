@@ -106,6 +106,8 @@ class WorkLoop {
     /// Calls `body(item, worker)` as parallel_for does. Throws Cancelled when told to stop.
     void run(std::size_t count,
              const std::function<void(std::size_t item, std::size_t worker)>& body);
+    /// A single item, on a thread that is there already. Likewise.
+    void item(const std::function<void()>& body);
 
   private:
     int threads_;

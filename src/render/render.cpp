@@ -68,16 +68,19 @@ Film render(const Scene& scene, const Tracer& tracer, const Settings& settings,
 }
 
 void WorkLoop::run(std::size_t count, const std::function<void(std::size_t, std::size_t)>& body) {
-    parallel_for(count, threads_, [&](std::size_t item, std::size_t worker) {
-        if (control_.cancel != nullptr && control_.cancel->load(std::memory_order_relaxed)) {
-            throw Cancelled();
-        }
-        body(item, worker);
-        if (!control_.progress) return;
-        const std::scoped_lock lock(mutex_);
-        ++done_;
-        control_.progress(static_cast<double>(done_) / static_cast<double>(items_));
-    });
+    parallel_for(count, threads_,
+                 [&](std::size_t k, std::size_t worker) { item([&] { body(k, worker); }); });
+}
+
+void WorkLoop::item(const std::function<void()>& body) {
+    if (control_.cancel != nullptr && control_.cancel->load(std::memory_order_relaxed)) {
+        throw Cancelled();
+    }
+    body();
+    if (!control_.progress) return;
+    const std::scoped_lock lock(mutex_);
+    ++done_;
+    control_.progress(static_cast<double>(done_) / static_cast<double>(items_));
 }
 
 }  // namespace ink
