@@ -115,5 +115,106 @@ TEST(Materials, AreForTheObjectThatIsNamedOrCounted) {
     EXPECT_THROW(draw(scene, with(settings, "material", "3:color=red")), UsageError);
 }
 
+// Borders of colour on sticks
+
+/// A stick in two halves, the first red, the second blue, that meet at a point.
+Scene two_colored_stick(Vec3d middle, Vec3d half) {
+    Glyphs sticks;
+    sticks.shape = {.kind = GlyphKind::frustum, .capped = false};
+    sticks.placements = {placement_between(middle - half, middle, 6.0),
+                         placement_between(middle, middle + half, 6.0)};
+    sticks.colors = {{255, 0, 0}, {0, 0, 255}};
+    Object object;
+    object.kind = ObjectKind::molecule;
+    object.usual_ids = IdLevel::object;
+    object.shape = std::move(sticks);
+    return Scene({std::move(object)});
+}
+
+/// Of a side of 32 pixels, or as many times finer: how red the pixels are, row by row.
+std::vector<float> redness(const Scene& scene, int finer, std::string_view smoothing,
+                           std::optional<IdLevel> ids = {}) {
+    constexpr int kSide = 32;
+    Settings settings = plan_view({kSide * finer, kSide * finer});
+    settings.view.orthographic = double{kSide};
+    settings.shading.mode = ShadeMode::flat;
+    settings.shading.background = {0, 255, 0};
+    settings.ids = ids;
+    const Film film =
+        draw(scene, with(settings, "aa", smoothing), {.display = false, .linear = true});
+    return {plane(film, "R").begin(), plane(film, "R").end()};
+}
+
+/// The mean of the finer pixels of pixel k.
+double mean(const std::vector<float>& fine, int finer, std::size_t k) {
+    const auto f = static_cast<std::size_t>(finer);
+    double sum = 0.0;
+    for (std::size_t j = 0; j < f; ++j) {
+        for (std::size_t i = 0; i < f; ++i) {
+            sum += double{fine[((k / 32 * f + j) * 32 + k % 32) * f + i]};
+        }
+    }
+    return sum / static_cast<double>(f * f);
+}
+
+/// Calls `check(k)` for the pixels that lie well within the stick's outlines.
+template <class Check>
+void for_each_inner_pixel(Vec3d middle, Vec3d half, const Check& check) {
+    const double size = std::hypot(half.x, half.y);
+    for (int y = 0; y < 32; ++y) {
+        for (int x = 0; x < 32; ++x) {
+            const Vec3d p = Vec3d{x - 15.5, 15.5 - y, 0} - middle;
+            const double across = std::abs(half.x * p.y - half.y * p.x) / size;
+            const double along = std::abs(half.x * p.x + half.y * p.y) / size;
+            if (across < 4.5 && along < 0.7 * size) check(static_cast<std::size_t>(32 * y + x));
+        }
+    }
+}
+
+TEST(StickBorders, HaveEachColourByItsAreaInAPixel) {
+    constexpr int kFiner = 32;
+    for (const Vec3d half : {Vec3d{12, 0, 0}, Vec3d{0, 12, 0}, Vec3d{9, 9, 0}, Vec3d{11, 4, 0}}) {
+        for (const double shift : {0.0, 0.15, 0.4, 0.8}) {
+            const Vec3d middle{shift, 0.3 * shift, 0};
+            const Scene scene = two_colored_stick(middle, half);
+            const std::vector<float> seen = redness(scene, 1, "edges");
+            const std::vector<float> fine = redness(scene, kFiner, "none");
+            for_each_inner_pixel(middle, half, [&](std::size_t k) {
+                EXPECT_NEAR(seen[k], mean(fine, kFiner, k), 0.02) << half.x << ' ' << shift;
+            });
+        }
+    }
+}
+
+TEST(StickBorders, AreSmoothOnSticksThatLeanTowardsTheEye) {
+    constexpr int kFiner = 16;
+    const Vec3d half{9, 4, 7};
+    const Scene scene = two_colored_stick({0, 0, 0}, half);
+    const std::vector<float> seen = redness(scene, 1, "edges");
+    const std::vector<float> fine = redness(scene, kFiner, "none");
+    int mixed = 0;
+    for_each_inner_pixel({0, 0, 0}, half, [&](std::size_t k) {
+        const double area = mean(fine, kFiner, k);
+        EXPECT_NEAR(seen[k], area, 0.1);  // the border is an arc
+        mixed += area > 0.05 && area < 0.95 ? 1 : 0;
+    });
+    EXPECT_GT(mixed, 5);
+}
+
+TEST(StickBorders, AreSmoothedOnceWhereALineRunsAlongThem) {
+    const Scene scene = two_colored_stick({0.4, 0, 0}, {12, 0, 0});
+    const std::vector<float> seen = redness(scene, 1, "edges", IdLevel::primitive);
+    const std::vector<float> as_one = redness(scene, 1, "edges");
+    for_each_inner_pixel({0.4, 0, 0}, {12, 0, 0},
+                         [&](std::size_t k) { EXPECT_NEAR(seen[k], as_one[k], 0.02); });
+}
+
+TEST(StickBorders, AreSharpWithoutSmoothing) {
+    const Vec3d half{9, 9, 0};
+    const std::vector<float> seen = redness(two_colored_stick({0.2, 0, 0}, half), 1, "none");
+    for_each_inner_pixel({0.2, 0, 0}, half,
+                         [&](std::size_t k) { EXPECT_TRUE(seen[k] == 0.0F || seen[k] > 0.99F); });
+}
+
 }  // namespace
 }  // namespace ink::test

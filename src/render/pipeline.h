@@ -60,6 +60,12 @@ struct Pipeline {
             ambient = bake->seen_by(camera);
             shader.use(ambient.get());
         }
+        if (traces && all.smoothing().kind == AntiAliasing::Kind::edges) {
+            shader.smooth_sticks(scene, camera, 1.0F / static_cast<float>(all.lattice_points()),
+                                 [&](std::uint32_t object, std::uint32_t a, std::uint32_t b) {
+                                     return ids.resolve(object, a) == ids.resolve(object, b);
+                                 });
+        }
         if (!all.aovs.empty()) aovs.emplace(scene, camera, all.aovs, locates(), target);
     }
 

@@ -126,6 +126,18 @@ void Shader::add_surface(const Object& object, const ResolvedMaterial& material,
     surfaces_.push_back(surface);
 }
 
+void Shader::smooth_sticks(const Scene& scene, const Camera& camera, float spacing,
+                           const StickBorders::SeenAsOne& seen_as_one) {
+    stick_borders_.emplace(camera.projection(), spacing);
+    for (std::uint32_t k = 0; k < surfaces_.size(); ++k) {
+        const bool colored = surfaces_[k].primitive_colors != nullptr;
+        stick_borders_->add(scene.objects()[k], [&](std::uint32_t a, std::uint32_t b) {
+            return colored && seen_as_one(k, a, b);
+        });
+    }
+    if (!stick_borders_->any()) stick_borders_.reset();
+}
+
 bool Shader::shade(const RayPacket& rays, const PointPacket& points, const HitPacket& hits,
                    ColorPacket& colors) const {
     NormalPacket normals;
@@ -140,7 +152,9 @@ bool Shader::shade(const SurfacePacket& surface, ColorPacket& colors) const {
         return object != kNoObject;
     }
     ColorLanes base;
-    find_base(surface.hits, object, base);
+    look_up_colors(surface.hits, object, base);
+    if (stick_borders_) stick_borders_->mix(surface, base);
+    whiten(base);
     ColorLanes lit;
     illuminate(surface, base, lit);
     if (fog_ > 0.0F) add_fog(surface, lit);
@@ -160,7 +174,8 @@ bool Shader::shade(const HitPacket& hits, const NormalPacket& normals, ColorPack
         return true;
     }
     ColorLanes base;
-    find_base(hits, object, base);
+    look_up_colors(hits, object, base);
+    whiten(base);
     ColorLanes lit;
     shade_open(lights_, normals, base, lit);
     finish(hits, lit, background_, colors);
@@ -168,8 +183,7 @@ bool Shader::shade(const HitPacket& hits, const NormalPacket& normals, ColorPack
 }
 
 /// Colours of surfaces before light falls on them.
-void Shader::find_base(const HitPacket& hits, std::uint32_t object, ColorLanes& base) const {
-    look_up_colors(hits, object, base);
+void Shader::whiten(ColorLanes& base) const {
     if (pastel_ > 0.0F) mix(base, pastel_, {1, 1, 1});
 }
 

@@ -16,6 +16,7 @@
 #include "shading/lights.h"
 #include "shading/material_rules.h"
 #include "shading/shadows.h"
+#include "shading/stick_borders.h"
 
 namespace ink {
 
@@ -56,6 +57,12 @@ class Shader {
     /// What the shares of light from all around are asked for; null: everything lies open.
     void use(const AmbientOcclusion* ambient) { ambient_ = ambient; }
 
+    /// Smooths the borders of colour on sticks, along which no line runs that would do so:
+    /// `seen_as_one` tells it of two primitives of an object. A sample stands for a square of
+    /// `spacing` pixels.
+    void smooth_sticks(const Scene& scene, const Camera& camera, float spacing,
+                       const StickBorders::SeenAsOne& seen_as_one);
+
     /// Colours of what a packet saw. Normals must be of unit length and face the viewer. False
     /// where all of it is background.
     bool shade(const SurfacePacket& surface, ColorPacket& colors) const;
@@ -65,7 +72,8 @@ class Shader {
     /// Whether colours follow from which primitives were hit and their normals, so that hits need
     /// no more than these.
     bool needs_normals_only() const {
-        return open_ && ambient_ == nullptr && fog_ <= 0.0F && !any_vertex_colors_;
+        return open_ && ambient_ == nullptr && fog_ <= 0.0F && !any_vertex_colors_ &&
+               !stick_borders_;
     }
     /// If so.
     bool shade(const HitPacket& hits, const NormalPacket& normals, ColorPacket& colors) const;
@@ -104,7 +112,7 @@ class Shader {
     void look_up_gloss(const HitPacket& hits, Gloss& gloss) const;
     void illuminate(const SurfacePacket& surface, const ColorLanes& base, ColorLanes& lit) const;
     void add_fog(const SurfacePacket& surface, ColorLanes& lit) const;
-    void find_base(const HitPacket& hits, std::uint32_t object, ColorLanes& base) const;
+    void whiten(ColorLanes& base) const;
     static void finish(const HitPacket& hits, const ColorLanes& lit, const ColorPacket& background,
                        ColorPacket& colors);
     void add_surface(const Object& object, const ResolvedMaterial& material, NormalSource usual);
@@ -121,6 +129,7 @@ class Shader {
     LightRig lights_;
     bool open_ = false;  ///< surfaces only scatter light, and nothing keeps it from them
     Shadows shadows_;
+    std::optional<StickBorders> stick_borders_;
     const AmbientOcclusion* ambient_ = nullptr;
     DepthCue depth_cue_;
     float fog_;
