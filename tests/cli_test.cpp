@@ -272,6 +272,17 @@ TEST_F(CommandLine, InfoTellsMachinesTheSame) {
     EXPECT_EQ(json[1]["length_unit"], "");
 }
 
+TEST_F(CommandLine, InfoTellsTypesAndWhichColumnsAreWords) {
+    folder_.write("a.csv", "x,y,z,radius,name,type\n0,0,0,1,sand,1\n3,0,0,1,clay,4\n");
+    expect_says(run({"info", "a.csv"}).out,
+                {"types       1 4", "field       name  no numbers", "field       type  1 to 4"});
+    const auto json = nlohmann::json::parse(run({"info", "--json", "a.csv"}).out);
+    EXPECT_EQ(json[0]["names"]["types"], (std::vector<std::string>{"1", "4"}));
+    EXPECT_EQ(json[0]["fields"][1]["name"], "name");
+    EXPECT_TRUE(json[0]["fields"][1]["least"].is_null());
+    EXPECT_EQ(json[0]["fields"][2]["most"], 4.0);
+}
+
 TEST_F(CommandLine, InfoLooksAtTheFrameThatIsAskedFor) {
     folder_.write("a.xyz", std::string(kXyz) + "1\n\nN 9 9 9\n");
     const auto json = nlohmann::json::parse(run({"info", "--json", "a.xyz", "--frame", "1"}).out);
@@ -287,6 +298,9 @@ TEST_F(CommandLine, SaysInOneLineWhatItWrote) {
     EXPECT_EQ(outcome.out, "");
     expect_says(outcome.err, {"a.png: 64 x 48 pixels, 20 primitives, "});
     EXPECT_EQ(std::ranges::count(outcome.err, '\n'), 1);
+    folder_.write("one.xyz", "1\n\nC 0 0 0\n");
+    const Outcome one = run({"render", "one.xyz", "-o", "b.png", "--size", "64x48"});
+    expect_says(one.err, {" 1 primitive, "});
 }
 
 TEST_F(CommandLine, SaysNothingWhenQuiet) {

@@ -5,6 +5,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "commands.h"
@@ -21,6 +22,8 @@ struct InfoArguments {
     Settings settings;
 };
 
+bool has_numbers(const FieldInfo& field) { return field.least <= field.most; }
+
 nlohmann::ordered_json to_json(const FileInfo& info) {
     nlohmann::ordered_json counts = nlohmann::ordered_json::object();
     for (const auto& [what, count] : info.counts) counts[what] = count;
@@ -28,10 +31,11 @@ nlohmann::ordered_json to_json(const FileInfo& info) {
     for (const auto& [what, all] : info.names) names[what] = all;
     auto fields = nlohmann::ordered_json::array();
     for (const FieldInfo& field : info.fields) {
-        fields.push_back({{"name", field.name},
-                          {"components", field.components},
-                          {"least", field.least},
-                          {"most", field.most}});
+        nlohmann::ordered_json entry{{"name", field.name}, {"components", field.components}};
+        // Of words there is neither.
+        entry["least"] = has_numbers(field) ? nlohmann::ordered_json(field.least) : nullptr;
+        entry["most"] = has_numbers(field) ? nlohmann::ordered_json(field.most) : nullptr;
+        fields.push_back(std::move(entry));
     }
     return {{"file", info.path.string()},
             {"format", info.format},
@@ -99,8 +103,10 @@ void print_text(const FileInfo& info) {
     for (const FieldInfo& field : info.fields) {
         const std::string width =
             field.components == 1 ? std::string() : fmt::format(" ({})", field.components);
-        line("field",
-             fmt::format("{}{}  {:.6g} to {:.6g}", field.name, width, field.least, field.most));
+        const std::string range = has_numbers(field)
+                                      ? fmt::format("{:.6g} to {:.6g}", field.least, field.most)
+                                      : "no numbers";
+        line("field", fmt::format("{}{}  {}", field.name, width, range));
     }
     for (const std::string& warning : info.warnings) line("warning", warning);
 }

@@ -141,9 +141,9 @@ void run(const RenderArguments& arguments) {
         write_stats(arguments.stats_file, to_json(arguments, *picture, report));
     }
     if (!arguments.quiet) {
-        say(fmt::format("{}: {} x {} pixels, {} primitives, {:.2f} s\n", arguments.output,
+        say(fmt::format("{}: {} x {} pixels, {} primitive{}, {:.2f} s\n", arguments.output,
                         picture->width(), picture->height(), report.primitives,
-                        ms_since(start) / 1000));
+                        report.primitives == 1 ? "" : "s", ms_since(start) / 1000));
     }
 }
 
