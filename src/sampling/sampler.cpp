@@ -11,21 +11,42 @@ namespace ink {
 
 namespace {
 
+/// The points of a block, not shifted.
+INKTRACE_INLINE void lay_points(float spacing, Block block, PointPacket& points) {
+    const int mask = block.across - 1;
+    const int shift = std::countr_zero(static_cast<unsigned>(block.across));
+    for (int i = 0; i < kLanes; ++i) {
+        const int column = i & mask;
+        const int row = i >> shift;
+        points.x[i] = (static_cast<float>(block.x + column) + 0.5F) * spacing;
+        points.y[i] = (static_cast<float>(block.y + row) + 0.5F) * spacing;
+        points.active[i] =
+            -static_cast<int>(block.whole || (column < block.columns && row < block.rows));
+    }
+}
+
+INKTRACE_INLINE void shift(const PointPacket& points, Vec2f by, PointPacket& shifted) {
+    for (int i = 0; i < kLanes; ++i) shifted.x[i] = points.x[i] + by.x;
+    for (int i = 0; i < kLanes; ++i) shifted.y[i] = points.y[i] + by.y;
+    shifted.active = points.active;
+}
+
 INKTRACE_MULTIVERSION
 void place_blocks(float spacing, std::span<const Block> blocks, Vec2f offset, PointPacket* points) {
     for (const Block block : blocks) {  // a copy: nothing that the loop writes can change it
-        PointPacket& packet = *points++;
-        const int mask = block.across - 1;
-        const int shift = std::countr_zero(static_cast<unsigned>(block.across));
-        for (int i = 0; i < kLanes; ++i) {
-            const int column = i & mask;
-            const int row = i >> shift;
-            packet.x[i] = (static_cast<float>(block.x + column) + 0.5F) * spacing + offset.x;
-            packet.y[i] = (static_cast<float>(block.y + row) + 0.5F) * spacing + offset.y;
-            packet.active[i] =
-                -static_cast<int>(block.whole || (column < block.columns && row < block.rows));
-        }
+        PointPacket at_zero;
+        lay_points(spacing, block, at_zero);
+        shift(at_zero, offset, *points++);
     }
+}
+
+/// One block, at each of the shifts from `offset`.
+INKTRACE_MULTIVERSION
+void place_shifted(float spacing, Block block, Vec2f offset, std::span<const Vec2f> shifts,
+                   PointPacket* points) {
+    PointPacket at_zero;
+    lay_points(spacing, block, at_zero);
+    for (const Vec2f by : shifts) shift(at_zero, offset + by, *points++);
 }
 
 INKTRACE_MULTIVERSION
@@ -238,9 +259,7 @@ void Sampler::place_stencils(Block block, Vec2f offset, std::span<const Vec2f> s
     block.columns = kBlockSide;
     block.rows = kBlockSide;
     place(stencil.size());
-    for (std::size_t k = 0; k < stencil.size(); ++k) {
-        place_blocks(spacing_, {&block, 1}, offset + stencil[k], &points_[k]);
-    }
+    place_shifted(spacing_, block, offset, stencil, points_.data());
     const ScreenBox own = LatticeBounds({&block, 1}).on_screen(spacing_, offset);
     const ScreenBox reach = bounds(stencil);
     const ScreenBox box{own.left + reach.left, own.top + reach.top, own.right + reach.right,
