@@ -8,15 +8,14 @@
 #include <utility>
 
 #include "accel/shape_intersection.h"
+#include "curvatures.h"
 
 namespace ink {
 namespace {
 
 using std::numbers::pi;
 
-struct Curvatures {
-    double least, most;
-};
+using test::Curvatures;
 
 /// Principal curvatures of the surface seen along -z at (x, y), from central differences of the
 /// normals of four neighbouring rays.
@@ -34,21 +33,8 @@ Curvatures traced_curvatures(const PlacedShape& shape, double x, double y, doubl
     const Seen left = look(x - step, y);
     const Seen up = look(x, y + step);
     const Seen down = look(x, y - step);
-    const Vec3d pu = right.point - left.point;
-    const Vec3d pv = up.point - down.point;
-    const Vec3d nu = right.normal - left.normal;
-    const Vec3d nv = up.normal - down.normal;
-    // Weingarten: the second fundamental form over the first.
-    const double E = dot(pu, pu);
-    const double F = dot(pu, pv);
-    const double G = dot(pv, pv);
-    const double L = dot(nu, pu);
-    const double M = 0.5 * (dot(nu, pv) + dot(nv, pu));
-    const double N = dot(nv, pv);
-    const double K = (L * N - M * M) / (E * G - F * F);
-    const double H = 0.5 * (E * N - 2.0 * F * M + G * L) / (E * G - F * F);
-    const double root = std::sqrt(std::max(H * H - K, 0.0));
-    return {H - root, H + root};
+    return test::curvatures(right.point - left.point, up.point - down.point,
+                            right.normal - left.normal, up.normal - down.normal);
 }
 
 TEST(Curvature, OfAnEllipsoidIsItsClosedForm) {
