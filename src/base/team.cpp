@@ -2,7 +2,6 @@
 
 #include <exception>
 #include <thread>
-#include <utility>
 
 namespace ink {
 

@@ -8,15 +8,20 @@ namespace ink {
 
 namespace {
 
-/// Where there are lines on surfaces seen directly, but not between faces, so near that a ridge
-/// beside them would touch them, or `more` pixels farther away.
-LineMask mask_of(const Edges& edges, const std::vector<TileLines>& found, float more) {
-    LineMask mask(edges.search_area());
+/// Where there are lines on surfaces seen directly, but not between faces.
+struct LineMasks {
+    LineMask touching;  ///< so near that a ridge beside them would touch them
+    LineMask near;      ///< `radius` pixels farther away
+};
+
+LineMasks masks_of(const Edges& edges, const std::vector<TileLines>& found, float radius) {
+    LineMasks masks{LineMask(edges.search_area()), LineMask(edges.search_area())};
     const auto mark = [&](Vec2f a, Vec2f b, std::size_t style) {
         constexpr float kBetween = 0.5F;  // what the eye does not tell from none, pixels
         const float ridge = edges.ink.styles[edges.style_of(LineType::ridge, 0)].width_px;
         const float touching = 0.5F * (edges.ink.styles[style].width_px + ridge) + kBetween;
-        mask.mark((a + b) * 0.5F, touching + more);
+        masks.touching.mark((a + b) * 0.5F, touching);
+        masks.near.mark((a + b) * 0.5F, touching + radius);
     };
     for (const TileLines& tile : found) {
         for (const Segment& segment : tile.segments) {
@@ -29,7 +34,7 @@ LineMask mask_of(const Edges& edges, const std::vector<TileLines>& found, float 
             if (stroke.direct && type != LineType::mesh) mark(stroke.a, stroke.b, stroke.style);
         }
     }
-    return mask;
+    return masks;
 }
 
 /// False only if the tile's lattice sees nothing.
@@ -201,9 +206,8 @@ LineDensity LineSearch::take_ridges() {
     double ms = 0.0;
     {
         const Timer timer(ms);
-        const LineMask touching = mask_of(edges_, found_.tiles, 0.0F);
-        const LineMask near = mask_of(edges_, found_.tiles, ridges_->radius_px());
-        ridges_->take(touching, near, [&](Segment& ridge) {
+        const LineMasks lines = masks_of(edges_, found_.tiles, ridges_->radius_px());
+        ridges_->take(lines.touching, lines.near, [&](Segment& ridge) {
             if (edges_.tempers_lines()) edges_.temper(ridge);
             const InkStroke stroke = make_ink_stroke(ridge, edges_.style_of(ridge));
             density.add(stroke, edges_.ink.styles[stroke.style].width_px * stroke.width_scale);
