@@ -78,11 +78,11 @@ TEST(JointOfFolds, ThatRunPastEachOtherIsOneCurve) {
     const std::vector<Segment> drawn = eased(folds, folds.size());
     EXPECT_EQ(ends_of_one(drawn).size(), 2U);
     EXPECT_LT(steepest(drawn), 25.0);
-    // Of two things, or farther apart than their strokes are wide.
+    // Of two things, or so far apart that more than half a stroke fits in between.
     for (Segment& s : folds) s.owner = s.a.y > 21.0F ? 2 : 1;
     EXPECT_EQ(ends_of_one(eased(folds, folds.size())).size(), 4U);
     EXPECT_EQ(ends_of_one(
-                  eased(fold({10.3F, 20.0F}, {43.0F, 20.0F}) + fold({40.0F, 25.0F}, {70.3F, 25.0F}),
+                  eased(fold({10.3F, 20.0F}, {43.0F, 20.0F}) + fold({40.0F, 26.0F}, {70.3F, 26.0F}),
                         1000))
                   .size(),
               4U);

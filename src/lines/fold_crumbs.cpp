@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <optional>
 
 #include "lines/segment_squares.h"
 
@@ -22,6 +23,7 @@ std::vector<std::size_t> FoldCrumbs::find(const FoldEndings& endings,
     for (const std::uint32_t k : endings.loose) group_of(k).loose = true;
     for (const std::uint32_t k : endings.free) group_of(k).free = true;
     for (const std::uint32_t k : endings.stubs) group_of(k).stub = true;
+    for (const std::uint32_t k : roots_) group_of(k).crumb = is_dot(k);
     unite_followers(endings.followers);
     std::erase_if(roots_, [&](std::uint32_t k) { return graph_.root(k) != k; });
     do {
@@ -43,7 +45,7 @@ void FoldCrumbs::unite_followers(std::span<const FoldHang> followers) {
     measure([&](std::uint32_t root) { return asked[root] != 0 || may_be_shallow(groups_[root]); });
     const auto counts = [&](std::uint32_t fold) {
         const Group& group = group_of(fold);
-        return group.length * group.depth >= settings_.stub_area * width_ * width_;
+        return group.length * group.depth >= settings_.follower_area * width_ * width_;
     };
     std::vector<FoldHang> united;
     std::ranges::copy_if(followers, std::back_inserter(united), [&](const FoldHang& hang) {
@@ -76,6 +78,21 @@ void FoldCrumbs::attach(std::span<const FoldHang> hangs) {
             group.attached = true;
         }
     }
+}
+
+/// Whether a group is a ring that its own line fills.
+bool FoldCrumbs::is_dot(std::uint32_t root) const {
+    const Group& group = groups_[root];
+    if (group.loose || group.stub || group.length >= settings_.shortest_stub * width_) return false;
+    constexpr int kMostInDot = 64;  // segments
+    std::optional<FoldEnd> end = FoldEnd{root, true};
+    for (int step = 0; end && step < kMostInDot; ++step) {
+        end = graph_.next(*end);
+        if (!end) break;
+        if (end->fold == root) return true;
+        end->at_b = !end->at_b;
+    }
+    return false;
 }
 
 bool FoldCrumbs::is_short(const Group& group) const {

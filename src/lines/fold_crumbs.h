@@ -64,6 +64,7 @@ class FoldCrumbs {
     void unite_followers(std::span<const FoldHang> followers);
     void attach(std::span<const FoldHang> hangs);
     bool judge();
+    bool is_dot(std::uint32_t root) const;
     bool is_short(const Group& group) const;
     float least_length(const Group& group) const;
     bool may_be_shallow(const Group& group) const;

@@ -11,8 +11,8 @@
 
 namespace ink {
 
-/// Where two pieces of a self-occlusion run side by side, so that their strokes touch, one of them
-/// is enough.
+/// Where two pieces of a self-occlusion run side by side, so that their strokes touch or nearly do,
+/// one of them is enough.
 class FoldDoubles {
   public:
     /// `squares`: those of `lines`. `pieces`: a line's number is that of the piece it belongs to.

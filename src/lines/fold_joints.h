@@ -14,7 +14,7 @@ struct JointSettings {
     float reach = 2.0F;  ///< widths of the line to each side of a jog that a curve takes its place
     /// Two ends that run past each other, no farther apart than this, in widths, are one line: so
     /// near to each other that of two pieces side by side one was dropped.
-    float aside = 1.2F;
+    float aside = 1.8F;
     float overlap = 2.5F;       ///< past each other by up to so many widths
     float gap = 2.0F;           ///< or short of each other
     float hair = 1.0F;          ///< widths: what is shorter and sticks out of a joint is dropped

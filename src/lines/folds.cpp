@@ -35,6 +35,7 @@ struct LooseEnd {
     std::uint32_t fold = 0;
     bool at_b = false;
     bool open = true;
+    Vec2f heading = way;            ///< of the line at the point; `way` is that at the path's end
     std::vector<Vec2f> path{};      ///< from the point on
     std::uint32_t reached = kNone;  ///< the segment that the path ends on
     bool leapt = false;             ///< reached by a leap, by one of its two ends
@@ -133,6 +134,7 @@ class FoldMender {
     /// What hangs on another fold, a step from that one's end, goes on as that one does: it hangs
     /// on what that hangs on, or both are one.
     void pass_on() {
+        carried_.assign(lines_.size(), kNone);
         constexpr std::uint32_t kOnNothing = kNone - 1;
         std::vector<std::uint32_t> lines_at(2 * lines_.size(), kNone);
         for (const FoldHang& hang : endings_.hangs) lines_at[number(hang)] = hang.line;
@@ -143,7 +145,11 @@ class FoldMender {
             FoldGraph::NearEnd near = graph_.end_near({hang.line, false}, from);
             const FoldGraph::NearEnd other = graph_.end_near({hang.line, true}, from);
             if (other.away < near.away) near = other;
-            if (near.away > 2.0F * spacing_ || near.end / 2 == hang.fold) continue;
+            if (near.end / 2 == hang.fold) continue;
+            if (near.away > 2.0F * spacing_) {
+                carry(hang, from);
+                continue;
+            }
             const std::uint32_t line = lines_at[near.end];
             if (line == kNone) continue;
             if (line == kOnNothing || pieces_[line] == pieces_[hang.fold]) {
@@ -151,6 +157,34 @@ class FoldMender {
             } else {
                 hang.line = line;
             }
+        }
+    }
+
+    /// What hangs on another fold and goes on as that one does to a line close by hangs on this
+    /// line. The way to it stays, even if the rest of the other fold is a crumb.
+    void carry(FoldHang& hang, Vec2f from) {
+        const std::uint32_t other = hang.line;
+        const Vec2f way = unit(from - graph_.back_from({hang.fold, hang.at_b}, 3.0F * spacing_));
+        FoldEnd end{other, dot(lines_[other].b - lines_[other].a, way) > 0.0F};
+        std::vector<std::uint32_t> walked;
+        Vec2f at = nearest_on(lines_[other], from);
+        for (float gone = 0.0F; gone <= settings_.shortest * width_;) {
+            const Vec2f to = graph_.point(end);
+            gone += length(to - at);
+            at = to;
+            walked.push_back(end.fold);
+            if (dot(unit(at - from), way) < 0.7F && gone > spacing_) return;
+            const std::uint32_t line = line_near(at, pieces_[other]);
+            const std::optional<FoldEnd> next = graph_.next(end);
+            if (line != kNone && pieces_[line] != pieces_[hang.fold]) {
+                const bool is_on = at == lines_[line].a || at == lines_[line].b;
+                if (next && !is_on) walked.push_back(next->fold);  // up to the line
+                hang.line = line;
+                for (const std::uint32_t k : walked) carried_[k] = hang.fold;
+                return;
+            }
+            if (!next) return;
+            end = {next->fold, !next->at_b};
         }
     }
 
@@ -239,7 +273,8 @@ class FoldMender {
     // Leaps
 
     /// Two ends that look at each other over a short gap are one line, whatever the valley between
-    /// them does, if the surface is steep all the way. The nearest pairs first.
+    /// them does, if the surface is steep all the way; so are two whose ways on come to each other,
+    /// or so near. The nearest pairs first.
     void leap_gaps() {
         struct Pair {
             float apart;
@@ -247,15 +282,16 @@ class FoldMender {
             auto operator<=>(const Pair&) const = default;
         };
         std::ranges::sort(ends_, {}, [](const LooseEnd& e) {
-            return std::tuple(e.point.y, e.point.x, e.way.y, e.way.x);
+            return std::tuple(e.point.y, e.point.x, e.heading.y, e.heading.x);
         });
-        const float most = settings_.longest_leap * width_;
+        const float most = settings_.longest_bridge * width_;
         std::vector<Pair> pairs;
         for (std::uint32_t k = 0; k < ends_.size(); ++k) {
+            if (ends_[k].reached != kNone) continue;
             for (std::uint32_t n = k + 1; n < ends_.size(); ++n) {
                 if (ends_[n].point.y - ends_[k].point.y > most) break;
                 const float apart = length(ends_[n].point - ends_[k].point);
-                if (apart <= most && face_each_other(ends_[k], ends_[n])) {
+                if (ends_[n].reached == kNone && apart <= most && may_be_one(ends_[k], ends_[n])) {
                     pairs.push_back({apart, k, n});
                 }
             }
@@ -263,9 +299,8 @@ class FoldMender {
         std::ranges::sort(pairs);
         for (const auto [apart, k, n] : pairs) {
             if (ends_[k].reached != kNone || ends_[n].reached != kNone) continue;
-            std::vector<Vec2f> path = plane::curve_between(ends_[k].point, ends_[k].way,
-                                                           ends_[n].point, ends_[n].way, spacing_);
-            if (!is_steep(path, ends_[k], most)) continue;
+            std::vector<Vec2f> path = way_between(ends_[k], ends_[n]);
+            if (path.empty()) continue;
             ends_[k].path = std::move(path);
             ends_[k].reached = ends_[n].fold;
             ends_[n].reached = ends_[k].fold;
@@ -274,26 +309,74 @@ class FoldMender {
         }
     }
 
-    /// Whether the surface is steep all along a path from an end on.
-    bool is_steep(std::span<const Vec2f> path, const LooseEnd& end, float reach) const {
-        bool steep = false;
-        loop_(1, [&](std::size_t, std::size_t worker) {
-            probe_.enter(end.point, reach, worker);
-            steep = probe_.is_steep(path, lines_[end.fold].owner, worker);
-        });
-        return steep;
-    }
-
-    /// Whether each lies ahead of the other, and has the nearer surface on the same side.
-    bool face_each_other(const LooseEnd& a, const LooseEnd& b) const {
-        constexpr float kAhead = 0.85F;
-        const Vec2f way = unit(b.point - a.point);
+    /// Whether two ends are of one surface, of two pieces, and have the nearer side in common.
+    bool may_be_one(const LooseEnd& a, const LooseEnd& b) const {
         const Segment& s = lines_[a.fold];
         const Segment& t = lines_[b.fold];
         const bool a_front = s.left_in_front == a.at_b;
         const bool b_front = t.left_in_front == b.at_b;
-        return s.owner == t.owner && a_front != b_front && root(a.fold) != root(b.fold) &&
-               dot(a.way, way) > kAhead && dot(b.way, way) < -kAhead;
+        return s.owner == t.owner && a_front != b_front && root(a.fold) != root(b.fold);
+    }
+
+    /// A point on the way on from an end, and the direction there.
+    struct OnWay {
+        std::size_t steps;
+        Vec2f point, way;
+    };
+    static OnWay on_way(const LooseEnd& end, std::size_t steps) {
+        if (steps == 0) return {0, end.point, end.heading};
+        const Vec2f at = end.path[steps - 1];
+        return {steps, at, unit(at - (steps == 1 ? end.point : end.path[steps - 2]))};
+    }
+
+    /// From one end to the other, without the former; nothing if that is no way.
+    std::vector<Vec2f> way_between(const LooseEnd& a, const LooseEnd& b) const {
+        const auto [from, to] = where_nearest(a, b);
+        const float apart = length(to.point - from.point);
+        const float most = settings_.longest_leap * width_;
+        if (apart > most || !face_each_other(from, to)) return {};
+        std::vector<Vec2f> path(a.path.begin(),
+                                a.path.begin() + static_cast<std::ptrdiff_t>(from.steps));
+        const std::vector<Vec2f> leap =
+            plane::curve_between(from.point, from.way, to.point, to.way, spacing_);
+        if (!is_steep(leap, lines_[a.fold].owner, from.point, most)) return {};
+        path.insert(path.end(), leap.begin(), leap.end());
+        for (std::size_t n = to.steps; n-- > 0;) path.push_back(on_way(b, n).point);
+        return path;
+    }
+
+    /// Of two ways on; as short as may be.
+    static std::pair<OnWay, OnWay> where_nearest(const LooseEnd& a, const LooseEnd& b) {
+        std::tuple<float, std::size_t, std::size_t> best{std::numeric_limits<float>::infinity(), 0,
+                                                         0};
+        for (std::size_t k = 0; k <= a.path.size(); ++k) {
+            const Vec2f from = on_way(a, k).point;
+            for (std::size_t n = 0; n <= b.path.size(); ++n) {
+                best = std::min(best, std::tuple(length(on_way(b, n).point - from), k, n));
+            }
+        }
+        return {on_way(a, std::get<1>(best)), on_way(b, std::get<2>(best))};
+    }
+
+    /// Whether each lies ahead of the other, or beside it where ways meet.
+    bool face_each_other(const OnWay& a, const OnWay& b) const {
+        constexpr float kAhead = 0.85F;
+        const Vec2f apart = b.point - a.point;
+        if (a.steps + b.steps > 0 && length(apart) < 2.0F * spacing_) {
+            return dot(a.way, b.way) < -kAhead;
+        }
+        const Vec2f way = unit(apart);
+        return dot(a.way, way) > kAhead && dot(b.way, way) < -kAhead;
+    }
+
+    /// Whether the surface is steep all along a path.
+    bool is_steep(std::span<const Vec2f> path, GeometryId owner, Vec2f from, float reach) const {
+        bool steep = false;
+        loop_(1, [&](std::size_t, std::size_t worker) {
+            probe_.enter(from, reach, worker);
+            steep = probe_.is_steep(path, owner, worker);
+        });
+        return steep;
     }
 
     // Bridges
@@ -359,6 +442,9 @@ class FoldMender {
         }
         FoldCrumbs crumbs(lines_, graph_, probe_, loop_, width_, settings_);
         repairs_.crumbs = crumbs.find(endings_, repairs_.bridges, owners_);
+        std::erase_if(repairs_.crumbs, [&](std::size_t k) {
+            return carried_[k] != kNone && !crumbs.has(carried_[k]);
+        });
         std::size_t kept = 0;
         for (std::size_t n = 0; n < owners_.size(); ++n) {
             if (crumbs.has(owners_[n])) continue;
@@ -390,6 +476,7 @@ class FoldMender {
     FoldGraph graph_;
     std::vector<std::uint32_t> pieces_;  ///< of each line: its group before any bridge was built
     FoldEndings endings_;
+    std::vector<std::uint32_t> carried_;  ///< a line: the fold that goes on along it
     std::vector<LooseEnd> ends_;
     std::vector<std::uint8_t> whole_;  ///< a piece: it goes on as a line of another kind
     /// Ends of folds, by their segments, that may double another one.

@@ -27,8 +27,10 @@ struct FoldSettings {
     /// A line with a loose end is a crumb if it hides next to nothing: its length times the
     /// greatest distance of its two sides, at a right angle to the surface, is less than this, in
     /// squares of its width, and it is not longer than so many widths.
-    float crumb_area = 5.0F;
-    float stub_area = 2.0F;  ///< the same of one that ends on another line on one side
+    float crumb_area = 8.0F;
+    float stub_area = 5.0F;  ///< the same of one that ends on another line on one side
+    /// The same of each of two that go on from each other, which are then judged as one.
+    float follower_area = 2.0F;
     /// And it is a crumb, whatever it hides, if it is shorter than so many widths: a dot, or a hair
     /// that sticks out of the line on which it ends. Dashes of three widths still looked like dirt
     /// on scans (the bunny and the armadillo at 1024 x 1024).
@@ -37,10 +39,10 @@ struct FoldSettings {
     /// bump on it. Where a mesh turns away at an outline, one lattice finds such a bit of an edge
     /// and another does not.
     float shortest_stub = 1.0F;
-    float longest_crumb = 10.0F;
+    float longest_crumb = 12.0F;
     /// What ends loosely while it runs beside another piece, closer than so many widths, so that
-    /// their strokes touch, is dropped.
-    float shadow = 1.0F;
+    /// their strokes touch or no half a stroke fits in between, is dropped.
+    float shadow = 1.5F;
 };
 
 struct FoldRepairs {
