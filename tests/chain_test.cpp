@@ -368,6 +368,34 @@ TEST(NearJunctions, AreOneWhateverTheWayBetweenThem) {
     EXPECT_EQ(chain_lines(segments, 1.0F, 1).chains.size(), 4U);
 }
 
+/// A crease and a fold come to one corner of an outline at an acute angle. A lattice sees them meet
+/// for a while, part, and meet again: between two junctions they are two.
+TEST(Twins, AreOneLineWhereASlitLiesBetween) {
+    const auto lines = [](float apart) {
+        std::vector<Segment> segments;
+        const auto add = [&](std::vector<Vec2f> points, LineType type, GeometryId right) {
+            for (std::size_t k = 0; k + 1 < points.size(); ++k) {
+                segments.push_back(segment(points[k], points[k + 1], 1, right));
+                segments.back().type = segments.back().type_at_b = type;
+            }
+        };
+        add({{0.5F, 0}, {0.5F, 1}, {0.5F, 2}, {0.5F, 3}, {0.5F, 4}}, LineType::silhouette, 0);
+        add({{0.5F, 2}, {1.5F, 2}, {2.5F, 2}}, LineType::self_occlusion, 1);
+        add({{0.5F, 2}, {1.5F, 2 + apart}, {2.5F, 2}}, LineType::crease, 1);
+        add({{2.5F, 2}, {5.5F, 1.5F}, {9.5F, 1}}, LineType::self_occlusion, 1);
+        add({{2.5F, 2}, {5.5F, 2.5F}, {9.5F, 3}}, LineType::crease, 1);
+        return chain_lines(segments, 1.0F, 1);
+    };
+    const auto count = [](const ChainGraph& graph, LineType type) {
+        return std::ranges::count(graph.chains, type, &Chain::type);
+    };
+    const ChainGraph near = lines(0.4F);
+    EXPECT_EQ(count(near, LineType::silhouette), 2);
+    EXPECT_EQ(count(near, LineType::self_occlusion), 2);
+    EXPECT_EQ(count(near, LineType::crease), 1);
+    EXPECT_EQ(count(lines(1.6F), LineType::crease), 2);
+}
+
 // Corners
 
 TEST(Corners, SplitAClosedLineIntoItsSides) {

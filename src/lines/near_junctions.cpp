@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <numeric>
+#include <tuple>
 #include <vector>
 
 #include "lines/junctions.h"
@@ -44,6 +45,23 @@ bool is_pinhole(const Chain& chain) {
     // Where y points down, a positive area lies on the right.
     const bool hole = chain.left_in_front == (twice_area > 0.0);
     return hole && std::abs(twice_area) < kNarrow * round;
+}
+
+/// Whether what lies between two chains that join the same junctions, the second the other way
+/// round or not, is a narrow slit.
+bool is_slit_between(const Chain& a, const Chain& b, bool backwards) {
+    const double round = length_of(a) + length_of(b);
+    if (round >= kLongestRound) return false;
+    const Vec2d origin = to_double(a.points.front());
+    const auto twice_area = [&](const Chain& chain) {
+        double area = 0.0;
+        for (std::size_t k = 0; k + 1 < chain.points.size(); ++k) {
+            area +=
+                cross(to_double(chain.points[k]) - origin, to_double(chain.points[k + 1]) - origin);
+        }
+        return area;
+    };
+    return std::abs(twice_area(a) + twice_area(b) * (backwards ? 1.0 : -1.0)) < kNarrow * round;
 }
 
 /// Sets of vertices, and the box that each lies in.
@@ -98,6 +116,7 @@ class JunctionMerger {
 
     bool run() {
         find_short_chains();
+        find_twins();
         if (std::ranges::find(gone_, 1) == gone_.end()) return false;
         mark_short_chains();
         place_clusters();
@@ -153,6 +172,45 @@ class JunctionMerger {
                 clusters_.find(chain(k).first_vertex) == clusters_.find(chain(k).last_vertex);
             if (loop || size < kLongestWay * kNear) {
                 gone_[k] = clusters_.join(chain(k).first_vertex, chain(k).last_vertex) ? 1 : 0;
+            }
+        }
+    }
+
+    /// Of two lines that a lattice tells apart for a few pixels, where they come to one corner at
+    /// an acute angle, one goes that divides no geometries.
+    void find_twins() {
+        struct Ends {
+            std::uint32_t low, high, chain;
+            bool backwards;
+            auto operator<=>(const Ends&) const = default;
+        };
+        std::vector<Ends> found;
+        for (std::uint32_t k = 0; k < gone_.size(); ++k) {
+            if (gone_[k] != 0 || chain(k).closed || length_of(chain(k)) >= kLongestRound) continue;
+            const std::uint32_t first = clusters_.find(chain(k).first_vertex);
+            const std::uint32_t last = clusters_.find(chain(k).last_vertex);
+            if (first == last) continue;
+            found.push_back({std::min(first, last), std::max(first, last), k, last < first});
+        }
+        std::ranges::sort(found);
+        const auto rank = [&](const Ends& ends) {
+            const Chain& line = chain(ends.chain);
+            return std::tuple(line.left == line.right, line.type, length_of(line));
+        };
+        for (std::size_t k = 0; k < found.size(); ++k) {
+            for (std::size_t n = k + 1; n < found.size(); ++n) {
+                const Ends& a = found[k];
+                const Ends& b = found[n];
+                if (a.low != b.low || a.high != b.high) break;
+                const Ends& lesser = rank(a) < rank(b) ? b : a;
+                const Chain& line = chain(lesser.chain);
+                if (gone_[a.chain] != 0 || gone_[b.chain] != 0 || line.left != line.right ||
+                    chain(a.chain).hidden != chain(b.chain).hidden) {
+                    continue;
+                }
+                if (is_slit_between(chain(a.chain), chain(b.chain), a.backwards != b.backwards)) {
+                    gone_[lesser.chain] = 1;
+                }
             }
         }
     }
