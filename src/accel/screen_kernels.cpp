@@ -14,6 +14,7 @@
 
 #include "accel/screen_lanes-inl.h"
 #include "accel/screen_tests-inl.h"
+#include "base/block_rows-inl.h"
 #include "base/pack_lanes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -169,19 +170,6 @@ HWY_INLINE void for_windows(const CellRange& cells, const Visit& visit) {
     }
 }
 
-/// Rows of four side by side.
-template <class Tag>
-HWY_INLINE hn::Vec<Tag> load_rows(Tag tag, const float* first, int stride) {
-    constexpr auto kRows = static_cast<int>(hn::MaxLanes(Tag())) / kBlockSide;
-    if constexpr (kRows == 1) {
-        return hn::LoadU(tag, first);
-    } else {
-        constexpr hn::Half<Tag> kHalf;
-        return hn::Combine(tag, load_rows(kHalf, first + kRows / 2 * stride, stride),
-                           load_rows(kHalf, first, stride));
-    }
-}
-
 /// Where the points of the cells of a window begin, and which of them bounds reach, before all that
 /// they see.
 struct ReachedCells {
@@ -200,7 +188,8 @@ struct ReachedCells {
         const auto down =
             hn::And(hn::Le(set(reach.top), hn::Add(top, extent)), hn::Ge(set(reach.bottom), top));
         const int first = (row + i / kBlockSide) * raster.stride() + column;
-        const auto farthest = load_rows(kFloats, raster.farthest + first, raster.stride());
+        const auto farthest =
+            load_rows(kFloats, raster.farthest + first, static_cast<std::size_t>(raster.stride()));
         reached = hn::And(hn::And(across, down), hn::Lt(set(reach.depth), farthest));
     }
 };

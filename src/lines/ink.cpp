@@ -135,8 +135,8 @@ void InkTile::start(Layer& layer) {
     layer.planes.t = alone ? nullptr : layer.t.data();
     layer.planes.touched = touched_.data();
     if (profile_.empty()) {
-        const std::size_t stride = across_ * kBlockSide + kBlockSide - 1;
-        const std::size_t pixels = stride * (blocks() / across_ * kBlockSide + kBlockSide - 1);
+        const std::size_t stride = across_ * kBlockSide + kInkWindowAcross - 1;
+        const std::size_t pixels = stride * (blocks() / across_ * kBlockSide + kInkWindowDown - 1);
         layer.narrow.assign(pixels, 0.0F);
         if (!alone) layer.narrow_t.assign(pixels, kInfinity);
         layer.planes.narrow = layer.narrow.data();

@@ -18,17 +18,18 @@
 #define INK_BLOCK_OFFSETS
 namespace ink {
 
-/// Where the pixels of a block lie, from the first one on.
-struct BlockOffsets {
+/// Where pixels lie, from the first one on, in rows of so many.
+struct PixelOffsets {
     Lanes<float> x, y;
-    constexpr BlockOffsets() : x(), y() {
+    constexpr explicit PixelOffsets(std::size_t across) : x(), y() {
         for (std::size_t i = 0; i < kLanes; ++i) {
-            x.at(i) = static_cast<float>(i % kBlockSide);
-            y.at(i) = static_cast<float>(i / kBlockSide);
+            x.at(i) = static_cast<float>(i % across);
+            y.at(i) = static_cast<float>(i / across);
         }
     }
 };
-inline constexpr BlockOffsets kBlockOffsets;
+inline constexpr PixelOffsets kBlockOffsets{kBlockSide};
+inline constexpr PixelOffsets kWindowOffsets{kInkWindowAcross};
 
 }  // namespace ink
 #endif
@@ -97,16 +98,23 @@ class Band {
           along_x_(set(bands.along_x[lane])),
           along_y_(set(bands.along_y[lane])),
           length_(set(bands.length[lane])) {}
-    /// From its middle line to the centres of a block's pixels from the i-th on; (x, y) is that of
-    /// its first pixel.
-    HWY_INLINE Number distance(float x, float y, int i) const {
-        return hn::Sqrt(squared_distance(x, y, i));
+    /// From its middle line to the centres of pixels that lie `offsets` from one at (x, y),
+    /// squared.
+    HWY_INLINE Number squared_distance(float x, float y, Number offsets_x, Number offsets_y) const {
+        return squared_distance(column(hn::Add(set(x), offsets_x)), hn::Add(set(y), offsets_y));
     }
-    HWY_INLINE Number squared_distance(float x, float y, int i) const {
-        const Number rx = hn::Sub(hn::Add(set(x), load(kBlockOffsets.x, i)), ax_);
-        const Number ry = hn::Sub(hn::Add(set(y), load(kBlockOffsets.y, i)), ay_);
-        const Number s = hn::Add(hn::Mul(rx, along_x_), hn::Mul(ry, along_y_));
-        const Number across = hn::Sub(hn::Mul(ry, along_x_), hn::Mul(rx, along_y_));
+    /// What of it depends on x alone.
+    struct Column {
+        Number along, across;
+    };
+    HWY_INLINE Column column(Number x) const {
+        const Number rx = hn::Sub(x, ax_);
+        return {hn::Mul(rx, along_x_), hn::Mul(rx, along_y_)};
+    }
+    HWY_INLINE Number squared_distance(const Column& column, Number y) const {
+        const Number ry = hn::Sub(y, ay_);
+        const Number s = hn::Add(column.along, hn::Mul(ry, along_y_));
+        const Number across = hn::Sub(hn::Mul(ry, along_x_), column.across);
         const Number beyond = hn::Max(hn::Max(hn::Neg(s), hn::Sub(s, length_)), hn::Zero(kFloats));
         return hn::Add(hn::Mul(across, across), hn::Mul(beyond, beyond));
     }
@@ -182,46 +190,50 @@ HWY_INLINE void draw_blocks(const InkBatch& batch, const Bands& bands, int lane,
     });
 }
 
-/// The same of a narrow one: mostly 4 x 4 pixels hold all that it inks, if they begin where it
-/// does.
+/// The same of a narrow one, in windows that begin where it does: mostly one is as wide as all that
+/// it inks. `ink_at(distance)` is the ink of pixels at a distance from its middle line.
 template <class InkAt>
-HWY_INLINE void draw_narrow(const InkBatch& batch, const Bands& bands, int lane,
+HWY_INLINE void draw_narrow(const InkBatch& batch, const Bands& bands, int lane, const Band& band,
                             const InkAt& ink_at) {
+    constexpr int kAcross = std::min(kStep, static_cast<int>(kInkWindowAcross));
+    constexpr int kDown = kStep / kAcross;
     const InkPlanes& planes = *batch.planes[static_cast<std::size_t>(lane)];
+    const int left = bands.left[lane];
     const int right = bands.right[lane];
+    const int top = bands.top[lane];
     const int bottom = bands.bottom[lane];
-    const auto t = set(batch.strokes.t[lane]);
-    for (int y = bands.top[lane]; y <= bottom; y += kBlockSide) {
-        for (int x = bands.left[lane]; x <= right; x += kBlockSide) {
-            const std::size_t first =
-                static_cast<std::size_t>(y) * planes.stride + static_cast<std::size_t>(x);
-            const float centre_x = planes.x0 + static_cast<float>(x);
-            const float centre_y = planes.y0 + static_cast<float>(y);
-            for (int i = 0; i < kLanes; i += kStep) {
-                const Number ink = ink_at(centre_x, centre_y, i);
-                const std::size_t at = first +
-                                       static_cast<std::size_t>(i / kBlockSide) * planes.stride +
-                                       static_cast<std::size_t>(i % kBlockSide);
-                float* const most = planes.narrow + at;
-                store_rows(kFloats, hn::Max(load_rows(kFloats, most, planes.stride), ink), most,
-                           planes.stride);
-                if (planes.narrow_t == nullptr) continue;
+    if (left > right || top > bottom) return;
+    const Number t = set(batch.strokes.t[lane]);
+    for (int x = left; x <= right; x += kAcross) {
+        const Band::Column column =
+            band.column(hn::Add(set(planes.x0 + static_cast<float>(x)), load(kWindowOffsets.x, 0)));
+        Number centre_y =
+            hn::Add(set(planes.y0 + static_cast<float>(top)), load(kWindowOffsets.y, 0));
+        std::size_t at =
+            static_cast<std::size_t>(top) * planes.stride + static_cast<std::size_t>(x);
+        for (int y = top; y <= bottom; y += kDown) {
+            const Number ink = ink_at(hn::Sqrt(band.squared_distance(column, centre_y)));
+            float* const most = planes.narrow + at;
+            store_rows<kInkWindowAcross>(
+                kFloats, hn::Max(load_rows<kInkWindowAcross>(kFloats, most, planes.stride), ink),
+                most, planes.stride);
+            if (planes.narrow_t != nullptr) {
                 float* const nearest = planes.narrow_t + at;
                 const auto inked = hn::Gt(ink, hn::Zero(kFloats));
                 const Number own = hn::IfThenElse(inked, t, set(kInfinity));
-                store_rows(kFloats, hn::Min(load_rows(kFloats, nearest, planes.stride), own),
-                           nearest, planes.stride);
+                store_rows<kInkWindowAcross>(
+                    kFloats,
+                    hn::Min(load_rows<kInkWindowAcross>(kFloats, nearest, planes.stride), own),
+                    nearest, planes.stride);
             }
-            const auto touch = [&](int column, int row) {
-                planes.touched[static_cast<std::size_t>(row / kBlockSide) * planes.across +
-                               static_cast<std::size_t>(column / kBlockSide)] |= kTouched;
-            };
-            const int last_x = std::min(x + kBlockSide - 1, right);
-            const int last_y = std::min(y + kBlockSide - 1, bottom);
-            touch(x, y);
-            touch(last_x, y);
-            touch(x, last_y);
-            touch(last_x, last_y);
+            centre_y = hn::Add(centre_y, set(static_cast<float>(kDown)));
+            at += static_cast<std::size_t>(kDown) * planes.stride;
+        }
+    }
+    for (int row = top / kBlockSide; row <= bottom / kBlockSide; ++row) {
+        for (int column = left / kBlockSide; column <= right / kBlockSide; ++column) {
+            planes.touched[static_cast<std::size_t>(row) * planes.across +
+                           static_cast<std::size_t>(column)] |= kTouched;
         }
     }
 }
@@ -229,8 +241,8 @@ HWY_INLINE void draw_narrow(const InkBatch& batch, const Bands& bands, int lane,
 void draw_solid_batch(const InkBatch& batch) {
     // A band that is wider on either side reaches beyond every pixel that its far edge could cut.
     constexpr float kWideHalf = 0.7072F;
-    // Of one that is wider still, blocks waste less than what begins anywhere, and may be full.
-    constexpr float kNarrowHalf = 1.25F;
+    // One that is wider still fills blocks, which are left out from then on.
+    constexpr float kNarrowHalf = 8.0F;
     Bands bands;
     make_bands<false>(batch, bands);
     for (int lane = 0; lane < batch.count; ++lane) {
@@ -238,19 +250,21 @@ void draw_solid_batch(const InkBatch& batch) {
         const SquareCoverage coverage(bands.shape, lane);
         const Number half = set(bands.half[lane]);
         const Number strength = set(batch.strokes.strength[lane]);
-        const auto wide_ink = [&](float x, float y, int i) HWY_ATTR {
-            return hn::Mul(coverage(hn::Sub(half, band.distance(x, y, i))), strength);
+        const auto wide_ink = [&](Number distance) HWY_ATTR {
+            return hn::Mul(coverage(hn::Sub(half, distance)), strength);
         };
         if (bands.half[lane] > kNarrowHalf) {
-            draw_blocks(batch, bands, lane, wide_ink);
+            draw_blocks(batch, bands, lane, [&](float x, float y, int i) HWY_ATTR {
+                return wide_ink(hn::Sqrt(band.squared_distance(x, y, load(kBlockOffsets.x, i),
+                                                               load(kBlockOffsets.y, i))));
+            });
             continue;
         }
         if (bands.half[lane] >= kWideHalf) {
-            draw_narrow(batch, bands, lane, wide_ink);
+            draw_narrow(batch, bands, lane, band, wide_ink);
             continue;
         }
-        draw_narrow(batch, bands, lane, [&](float x, float y, int i) HWY_ATTR {
-            const Number distance = band.distance(x, y, i);
+        draw_narrow(batch, bands, lane, band, [&](Number distance) HWY_ATTR {
             const Number near_side = coverage(hn::Sub(half, distance));
             const Number far_side = coverage(hn::Sub(hn::Neg(half), distance));
             return hn::Mul(hn::Sub(near_side, far_side), strength);
@@ -277,7 +291,9 @@ void draw_soft_batch(const InkBatch& batch, std::span<const float> profile) {
         if (half <= 0.0F) continue;
         const Number per_half = set(1.0F / (half * half));
         const auto squared_at = [&](float x, float y, int i) HWY_ATTR {
-            return hn::Mul(band.squared_distance(x, y, i), per_half);
+            return hn::Mul(
+                band.squared_distance(x, y, load(kBlockOffsets.x, i), load(kBlockOffsets.y, i)),
+                per_half);
         };
         if (batch.strokes.strength[lane] != 1.0F) {
             const Number strength = set(batch.strokes.strength[lane]);

@@ -23,8 +23,9 @@ struct InkPlanes {
     Lanes<float>* coverage;
     Lanes<float>* t;        ///< null: not wanted
     std::uint8_t* touched;  ///< kTouched or, where no more ink can change anything, kFull
-    /// What narrow strokes ink, pixel by pixel and row by row, kBlockSide - 1 more each way than
-    /// the blocks have: the ink of a pixel is the greater of both, its t the lesser.
+    /// What narrow strokes ink, pixel by pixel and row by row, as many more to the right and below
+    /// as a window may reach beyond the blocks: the ink of a pixel is the greater of both, its t
+    /// the lesser.
     float* narrow;
     float* narrow_t;     ///< null: not wanted
     std::size_t stride;  ///< pixels
@@ -33,6 +34,8 @@ struct InkPlanes {
     Lanes<float>* squared;
 };
 inline constexpr std::uint8_t kTouched = 1, kFull = 2;
+/// The widest and the highest window of pixels that is inked at a time.
+inline constexpr std::size_t kInkWindowAcross = 8, kInkWindowDown = 2;
 
 /// The first `count` of the strokes, each onto planes of its own, all of a tile of `width` x
 /// `height` pixels.
