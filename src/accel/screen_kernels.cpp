@@ -32,15 +32,19 @@ HWY_INLINE float most(const Lanes<float>& lanes) {
     return hn::GetLane(hn::MaxOfLanes(kFloats, all));
 }
 
+HWY_INLINE Mask overlap_of(const BoundsPacket& bounds, const Window& window, int i) {
+    const auto across = hn::And(hn::Le(load(bounds.left, i), set(window.right)),
+                                hn::Ge(load(bounds.right, i), set(window.left)));
+    const auto down = hn::And(hn::Le(load(bounds.top, i), set(window.bottom)),
+                              hn::Ge(load(bounds.bottom, i), set(window.top)));
+    const auto near = hn::Lt(load(bounds.depth, i), set(window.farthest));
+    return hn::And(hn::And(across, down), near);
+}
+
 HWY_INLINE LaneBits overlap_lanes(const BoundsPacket& bounds, const Window& window) {
     LaneBits all = 0;
     for (int i = 0; i < kLanes; i += kStep) {
-        const auto across = hn::And(hn::Le(load(bounds.left, i), set(window.right)),
-                                    hn::Ge(load(bounds.right, i), set(window.left)));
-        const auto down = hn::And(hn::Le(load(bounds.top, i), set(window.bottom)),
-                                  hn::Ge(load(bounds.bottom, i), set(window.top)));
-        const auto near = hn::Lt(load(bounds.depth, i), set(window.farthest));
-        all |= bits_of(hn::And(hn::And(across, down), near)) << static_cast<unsigned>(i);
+        all |= bits_of(overlap_of(bounds, window, i)) << static_cast<unsigned>(i);
     }
     return all;
 }
@@ -157,7 +161,30 @@ struct CellRanges {
     HWY_INLINE CellRange of(int lane) const {
         return {left[lane], right[lane], top[lane], bottom[lane]};
     }
+    /// Which reach into one cell only.
+    HWY_INLINE Mask alone(int i) const {
+        return hn::RebindMask(kFloats, hn::And(hn::Eq(load(left, i), load(right, i)),
+                                               hn::Eq(load(top, i), load(bottom, i))));
+    }
 };
+
+/// Whether there is a point of the raster within bounds: where primitives are smaller than the
+/// spacing of points, most of them have none.
+HWY_INLINE Mask holds_point(const BoundsPacket& bounds, const FrontRaster& raster, int i) {
+    // What the place of a point is rounded by, in spacings, and more.
+    constexpr float kSlack = 1.0F / 64.0F;
+    const float scale = kBlockSide / raster.side;
+    const float first = 0.5F * (1.0F - (raster.side - raster.extent) * scale);
+    const auto holds = [&](const Lanes<float>& low, const Lanes<float>& high, float from) {
+        const auto place = [&](const Lanes<float>& at) {
+            return hn::Sub(hn::Mul(hn::Sub(load(at, i), set(from)), set(scale)), set(first));
+        };
+        return hn::Le(hn::Ceil(hn::Sub(place(low), set(kSlack))),
+                      hn::Floor(hn::Add(place(high), set(kSlack))));
+    };
+    return hn::And(holds(bounds.left, bounds.right, raster.left),
+                   holds(bounds.top, bounds.bottom, raster.top));
+}
 
 /// Calls `visit(column, row)` for the first cells of windows that cover the range, until it returns
 /// false.
@@ -224,6 +251,22 @@ struct Pairs {
         }
     }
 
+    /// Lists the cells of those primitives, from the i-th on, that are `alone` in reaching into
+    /// one.
+    HWY_INLINE void add_alone(Mask alone, const BoundsPacket& bounds, const CellRanges& ranges,
+                              const FrontRaster& raster, int i) {
+        const Integer cell =
+            hn::Add(hn::Mul(load(ranges.top, i), hn::Set(kIntegers, raster.stride())),
+                    load(ranges.left, i));
+        const Number farthest = hn::GatherIndex(kFloats, raster.farthest, cell);
+        const Mask live = hn::And(alone, hn::Lt(load(bounds.depth, i), farthest));
+        const auto lanes = hn::Iota(kWords, static_cast<std::uint32_t>(i));
+        const auto all = hn::Add(hn::ShiftLeft<4>(hn::BitCast(kWords, cell)), lanes);
+        const LanePacker packer(live);
+        hn::StoreU(packer.pack(kWords, all), kWords, list[0].data() + count);
+        count += packer.count();
+    }
+
     /// Tests what is listed, and brings the farthest depths of its cells up to date.
     template <class Make>
     HWY_INLINE void test(const Make& make, const ScreenPacket* packets, std::uint32_t index,
@@ -255,12 +298,19 @@ void intersect_raster(const Basis& basis, const ScreenPacket* packets, std::uint
     const float height = static_cast<float>(raster.down) * raster.side;
     const Window window{raster.left, raster.left + width, raster.top, raster.top + height,
                         kInfinity};
-    const LaneBits all = overlap_lanes(packet.bounds, window);
-    if (all == 0) return;
     const CellRanges ranges(packet.bounds, raster);
+    Pairs pairs;
+    LaneBits others = 0;  // that reach into several cells
+    for (int i = 0; i < kLanes; i += kStep) {
+        const Mask seen =
+            hn::And(overlap_of(packet.bounds, window, i), holds_point(packet.bounds, raster, i));
+        const Mask alone = hn::And(seen, ranges.alone(i));
+        pairs.add_alone(alone, packet.bounds, ranges, raster, i);
+        others |= bits_of(hn::AndNot(alone, seen)) << static_cast<unsigned>(i);
+    }
+    if (pairs.count == 0 && others == 0) return;
     for_kind(basis, packet, [&](const auto& make) {
-        Pairs pairs;
-        for (LaneBits lanes = all; lanes != 0; lanes &= lanes - 1) {
+        for (LaneBits lanes = others; lanes != 0; lanes &= lanes - 1) {
             const int lane = std::countr_zero(lanes);
             const Reach reach(packet.bounds, lane);
             const auto primitive = make(packet, lane);
