@@ -102,6 +102,24 @@ HWY_INLINE void for_kind(const Basis& basis, const ScreenPacket& packet, const R
     }
 }
 
+/// Whether any of a front's points lies within bounds.
+HWY_INLINE bool holds_any(const BoundsPacket& bounds, int lane, const Front& front) {
+    constexpr float kSlack = 1.0F / 64.0F;  // what the place of a point is rounded by, and more
+    const auto left = set(bounds.left[lane] - kSlack);
+    const auto right = set(bounds.right[lane] + kSlack);
+    const auto top = set(bounds.top[lane] - kSlack);
+    const auto bottom = set(bounds.bottom[lane] + kSlack);
+    bool any = false;
+    for (int i = 0; i < kLanes; i += kStep) {
+        const auto x = load(front.x, i);
+        const auto y = load(front.y, i);
+        const auto across = hn::And(hn::Ge(x, left), hn::Le(x, right));
+        const auto down = hn::And(hn::Ge(y, top), hn::Le(y, bottom));
+        any = any || !hn::AllFalse(kFloats, hn::And(across, down));
+    }
+    return any;
+}
+
 void intersect_front(const Basis& basis, const ScreenPacket* packets, std::uint32_t index,
                      Front& front) {
     const ScreenPacket& packet = packets[index];
@@ -110,6 +128,7 @@ void intersect_front(const Basis& basis, const ScreenPacket* packets, std::uint3
     for_kind(basis, packet, [&](const auto& make) {
         for (; lanes != 0; lanes &= lanes - 1) {
             const int lane = std::countr_zero(lanes);
+            if (!holds_any(packet.bounds, lane, front)) continue;
             const auto test = make(packet, lane);
             test({packets, index * kLanes + static_cast<std::uint32_t>(lane)}, front);
         }
