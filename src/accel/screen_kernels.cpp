@@ -102,8 +102,7 @@ HWY_INLINE void for_kind(const Basis& basis, const ScreenPacket& packet, const R
     }
 }
 
-/// Whether any of a front's points lies within bounds.
-HWY_INLINE bool holds_any(const BoundsPacket& bounds, int lane, const Front& front) {
+bool holds_any(const BoundsPacket& bounds, int lane, const Front& front) {
     constexpr float kSlack = 1.0F / 64.0F;  // what the place of a point is rounded by, and more
     const auto left = set(bounds.left[lane] - kSlack);
     const auto right = set(bounds.right[lane] + kSlack);
@@ -485,6 +484,7 @@ HWY_EXPORT(find_union);
 HWY_EXPORT(intersect_front);
 HWY_EXPORT(intersect_raster);
 HWY_EXPORT(raster_farthest);
+HWY_EXPORT(holds_any);
 HWY_EXPORT(raster_matters);
 HWY_EXPORT(start_front);
 HWY_EXPORT(start_raster);
@@ -508,6 +508,10 @@ void intersect(const Basis& basis, const ScreenPacket* packets, std::uint32_t in
 
 float farthest_of(const FrontRaster& raster) {
     return HWY_DYNAMIC_DISPATCH(raster_farthest)(raster);
+}
+
+bool matters(const BoundsPacket& bounds, int lane, const Front& front) {
+    return HWY_DYNAMIC_DISPATCH(holds_any)(bounds, lane, front);
 }
 
 bool matters(const BoundsPacket& bounds, int lane, const FrontRaster& raster) {

@@ -73,7 +73,9 @@ void intersect(const Basis& basis, const ScreenPacket* packets, std::uint32_t in
 
 /// Largest of the cells' farthest depths.
 float farthest_of(const FrontRaster& raster);
-/// Whether bounds reach into a cell, before all that it sees.
+/// Whether bounds hold a point of a front.
+bool matters(const BoundsPacket& bounds, int lane, const Front& front);
+/// Whether they reach into a cell, before all that it sees.
 bool matters(const BoundsPacket& bounds, int lane, const FrontRaster& raster);
 
 /// The front as hits.

@@ -233,6 +233,8 @@ void ScreenTileTracer::find_front(Front& front) {
              lanes &= lanes - 1) {
             const std::size_t i = k * kLanes + static_cast<std::size_t>(std::countr_zero(lanes));
             if (!(candidates_.depth(i) < front.window.farthest)) return;
+            // Points may be far apart.
+            if (!matters(candidates_.bounds(k), static_cast<int>(i % kLanes), front)) continue;
             const std::uint32_t packet = packet_of(i);
             ink::intersect(view_.basis, store_.packets(), packet, front);
         }
