@@ -79,8 +79,8 @@ SideWork enlarging(const PixelEnlarger& enlarger, FaceTiling* faces, Film& large
             }};
 }
 
-/// What is for one thread, to mend lines and to enlarge them, is done while the others enlarge
-/// pixels and sharpen them along the lines.
+/// What is for one thread, to mend lines, to take ridges and to enlarge both, is done while the
+/// others enlarge pixels or sharpen them along the lines. Ridges are found while lines are mended.
 RenderStats render_fewer_rays(const Pipeline& few, const Pipeline& full,
                               const Enlargement& enlargement, const RenderControl& control) {
     const Edges small(few);
@@ -92,25 +92,30 @@ RenderStats render_fewer_rays(const Pipeline& few, const Pipeline& full,
     LineSearch search(small, loop);
     FoundLines& found = search.found();
     FaceTiling* const faces = found.tiling ? &*found.tiling : nullptr;
-    search.search_tiles();
     const SideWork rows = enlarging(enlarger, faces, full.film);
+    // Each cell of the lattice belongs to one tile, so threads sharpen different pixels.
+    const SideWork cells{tiles, [&](std::size_t k) {
+                             enlarger.sharpen(small.search_tiles[k], found.tiles[k].segments,
+                                              full.film, faces);
+                         }};
     loop.expect(rows.items);
-    search.mend(rows);
+    search.search_tiles();
+    const bool finds_ridges = small.wants_ridges();
+    search.mend(finds_ridges ? SideWork{} : rows);
 
     FoundLines lines;
     lines.tiles.resize(large.search_tiles.size());
-    // Each cell of the lattice belongs to one tile, so threads sharpen different pixels.
-    loop.run(1 + tiles, [&](std::size_t i, std::size_t) {
-        if (i > 0) {
-            enlarger.sharpen(small.search_tiles[i - 1], found.tiles[i - 1].segments, full.film,
-                             faces);
-            return;
-        }
+    const SideWork& beside = finds_ridges ? rows : cells;
+    loop.run(1 + beside.items, [&](std::size_t i, std::size_t) {
+        if (i > 0) return beside.body(i - 1);
         search.finish();
         add_hidden_strokes(small, found);
         enlarge_lines(found, enlargement, large, lines.tiles);
         lines.thinning = enlarged(std::move(found.thinning), enlargement);
     });
+    if (finds_ridges) {
+        loop.run(cells.items, [&](std::size_t k, std::size_t) { cells.body(k); });
+    }
     lines.tiling = std::move(found.tiling);
     RenderStats stats = search.stats();
     draw_lines(large, lines, loop, stats);
