@@ -11,6 +11,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "accel/cost.h"
@@ -53,11 +54,13 @@ struct Row {
     double median_ms;
     double in_r;  ///< median over rounds of time / R of the same round
     RenderStats fastest;
+    double speedup;  ///< on several threads: the same of that on one thread / time; else 0
 };
 
 struct Result {
     std::string scene;
     double r_ms;
+    double r_speedup;  ///< what the machine gives: of loops at once, one a thread
     std::vector<Row> rows;
     std::size_t primitives;
     double build_ms;       ///< of the tracer, with all threads
@@ -68,6 +71,11 @@ struct Variant {
     std::string name;
     Settings settings;
     double share = 1.0;  ///< of a ray along a pixel's side; below 1 it is a draft
+
+    /// Whether it is `other` on more threads.
+    bool repeats(const Variant& other) const {
+        return name.starts_with(other.name + ", ") && name.ends_with(" threads");
+    }
 };
 
 /// What is measured of a scene.
@@ -160,6 +168,35 @@ Built build_time(const Scene& scene) {
     return built;
 }
 
+/// The faster of two: a cold start is not what the loop costs.
+double bare_ms(const BareLoop& bare, const BareLoop::Pinhole& rays) {
+    std::size_t hits = 0;
+    return std::min(bare.run(rays, hits), bare.run(rays, hits));
+}
+
+/// How many times as fast `threads` loops at once are as one after the other. Work that nothing
+/// shares: where this is below `threads`, processors share what they work with.
+double bare_speedup(const BareLoop& bare, const BareLoop::Pinhole& rays, int threads,
+                    double alone_ms) {
+    double best = 1e30;
+    for (int k = 0; k < 2; ++k) {
+        const auto start = std::chrono::steady_clock::now();
+        {
+            std::vector<std::jthread> loops;
+            for (int i = 0; i < threads; ++i) {
+                loops.emplace_back([&] {
+                    std::size_t hits = 0;
+                    bare.run(rays, hits);
+                });
+            }
+        }
+        const std::chrono::duration<double, std::milli> time =
+            std::chrono::steady_clock::now() - start;
+        best = std::min(best, time.count());
+    }
+    return threads * alone_ms / best;
+}
+
 /// Rounds of R and every variant in turn, so that a machine that slows down slows all alike.
 Result measure(const NamedScene& named, const Plan& plan) {
     const Scene scene(named.objects);
@@ -173,14 +210,16 @@ Result measure(const NamedScene& named, const Plan& plan) {
     const BareLoop::Pinhole rays = pinhole(scene, camera, whole);
 
     std::vector<double> r;
+    std::vector<double> speedups;
     std::vector<std::vector<double>> times(list.size());
     std::vector<std::vector<double>> ratios(list.size());
     std::vector<RenderStats> fastest(list.size());
     for (int round = 0; round <= plan.rounds; ++round) {
-        std::size_t hits = 0;
-        // The faster of two: a cold start is not what the loop costs.
-        const double loop = std::min(bare.run(rays, hits), bare.run(rays, hits));
-        if (round > 0) r.push_back(loop);
+        const double loop = bare_ms(bare, rays);
+        if (round > 0) {
+            r.push_back(loop);
+            speedups.push_back(bare_speedup(bare, rays, plan.threads, loop));
+        }
         for (std::size_t k = 0; k < list.size(); ++k) {
             RenderStats best;
             best.render_ms = 1e30;
@@ -200,9 +239,21 @@ Result measure(const NamedScene& named, const Plan& plan) {
             if (round == 1 || best.render_ms < fastest[k].render_ms) fastest[k] = best;
         }
     }
-    Result result{named.name, median(r), {}, scene.primitive_count(), built.ms, built.bytes};
+    Result result{named.name, median(r),  median(speedups), {}, scene.primitive_count(),
+                  built.ms,   built.bytes};
     for (std::size_t k = 0; k < list.size(); ++k) {
-        result.rows.push_back({list[k].name, median(times[k]), median(ratios[k]), fastest[k]});
+        Row row{list[k].name, median(times[k]), median(ratios[k]), fastest[k], 0.0};
+        const auto alone = std::ranges::find_if(
+            list, [&](const Variant& other) { return list[k].repeats(other); });
+        if (alone != list.end()) {
+            const auto& alone_ms = times[static_cast<std::size_t>(alone - list.begin())];
+            std::vector<double> gains;
+            for (std::size_t i = 0; i < alone_ms.size(); ++i) {
+                gains.push_back(alone_ms[i] / times[k][i]);
+            }
+            row.speedup = median(gains);
+        }
+        result.rows.push_back(std::move(row));
     }
     return result;
 }
@@ -243,15 +294,11 @@ void print_phases(const RenderStats& stats) {
 void print(const Result& result, bool with_phases) {
     fmt::print("{}\n  {:<28}{:>9.2f} ms {:>8.0f} bytes a primitive, {} primitives\n", result.scene,
                "build", result.build_ms, result.bytes_of_each, result.primitives);
-    fmt::print("  {:<28}{:>9.2f} ms\n", "R (bare rtcIntersect16 loop)", result.r_ms);
+    fmt::print("  {:<28}{:>9.2f} ms              {:.2f} x as fast, one a thread\n",
+               "R (bare rtcIntersect16 loop)", result.r_ms, result.r_speedup);
     for (const Row& row : result.rows) {
         fmt::print("  {:<28}{:>9.2f} ms {:>8.3f} R", row.what, row.median_ms, row.in_r);
-        const auto alone = std::ranges::find_if(result.rows, [&](const Row& other) {
-            return row.what.starts_with(other.what + ", ") && row.what.ends_with(" threads");
-        });
-        if (alone != result.rows.end()) {
-            fmt::print("   {:.2f} x as fast", alone->median_ms / row.median_ms);
-        }
+        if (row.speedup > 0.0) fmt::print("   {:.2f} x as fast", row.speedup);
         fmt::print("\n");
         if (with_phases) print_phases(row.fastest);
     }
@@ -260,13 +307,13 @@ void print(const Result& result, bool with_phases) {
 }
 
 nlohmann::ordered_json to_json(const Result& result) {
-    nlohmann::ordered_json json{{"scene", result.scene},
-                                {"primitives", result.primitives},
-                                {"build_ms", result.build_ms},
-                                {"bytes_a_primitive", result.bytes_of_each},
-                                {"r_ms", result.r_ms}};
+    nlohmann::ordered_json json{
+        {"scene", result.scene},       {"primitives", result.primitives},
+        {"build_ms", result.build_ms}, {"bytes_a_primitive", result.bytes_of_each},
+        {"r_ms", result.r_ms},         {"r_speedup", result.r_speedup}};
     for (const Row& row : result.rows) {
         nlohmann::ordered_json own{{"what", row.what}, {"ms", row.median_ms}, {"r", row.in_r}};
+        if (row.speedup > 0.0) own["speedup"] = row.speedup;
         for (const auto& [name, ms] : phases(row.fastest)) own["phases_ms"][name] = ms;
         json["rows"].push_back(own);
     }
