@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <hwy/targets.h>
 #include <array>
 #include <cmath>
 #include <random>
@@ -11,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "instruction_sets.h"
 #include "lines/detect.h"
 #include "lines/detect_blocks.h"
 
@@ -156,10 +156,7 @@ struct CutGrid {
 TEST(Detection, IsTheSameBlockByBlockOnEveryInstructionSet) {
     DetectSettings settings;
     settings.least_jump = 0.05F;
-    for (const std::int64_t target : {HWY_SSSE3, HWY_SSE4, HWY_AVX2, HWY_AVX3}) {
-        hwy::SetSupportedTargetsForTest(0);
-        if ((hwy::SupportedTargets() & target) == 0) continue;
-        hwy::SetSupportedTargetsForTest(target);
+    on_every_instruction_set([&] {
         for (const auto& [width, height] : kGridSizes) {
             SampleGrid grid = random_grid(width, height, true);
             // A hole of a few blocks.
@@ -173,8 +170,7 @@ TEST(Detection, IsTheSameBlockByBlockOnEveryInstructionSet) {
             EXPECT_EQ(set_of(found), suspects_by_definition(grid, settings))
                 << width << " x " << height;
         }
-    }
-    hwy::SetSupportedTargetsForTest(0);
+    });
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <tuple>
 #include <vector>
 
+#include "instruction_sets.h"
 #include "lines/coverage.h"
 #include "lines_scenes.h"
 
@@ -135,6 +136,38 @@ TEST(Ink, IsTheSameOnAnyTile) {
             }
         }
     }
+}
+
+/// However it is inked: narrow or wide, on one row of pixels or many.
+TEST(Ink, OfAStrokeIsTheAreaUnderItsBandOnEveryInstructionSet) {
+    on_every_instruction_set([] {
+        for (const double width : {0.4, 1.0, 2.0, 3.0, 5.0, 9.0, 15.9, 16.1, 21.0}) {
+            for (int angle_deg = 0; angle_deg < 180; angle_deg += 17) {
+                const Vec2f along{static_cast<float>(std::cos(angle_deg * kDegrees)),
+                                  static_cast<float>(std::sin(angle_deg * kDegrees))};
+                const Vec2f middle{24.3F, 23.6F};
+                const float reach = 9.0F;  // to either end
+                const std::vector<double> ink =
+                    draw({{middle - along * reach, middle + along * reach}}, width);
+                for (int k = 0; k < kSide * kSide; ++k) {
+                    const Vec2f place{static_cast<float>(k % kSide) + 0.5F,
+                                      static_cast<float>(k / kSide) + 0.5F};
+                    const Vec2f way = place - middle;
+                    const float beside = std::abs(way.x * along.y - way.y * along.x);
+                    const double own = ink[static_cast<std::size_t>(k)];
+                    if (std::abs(way.x * along.x + way.y * along.y) < reach) {
+                        EXPECT_NEAR(own,
+                                    band_coverage(beside, 0.5F * static_cast<float>(width), along.y,
+                                                  along.x),
+                                    1e-5)
+                            << width << " px, " << angle_deg << " degrees, pixel " << k;
+                    } else if (length(way) > reach + 0.5 * width + 0.75) {
+                        EXPECT_EQ(own, 0.0);
+                    }
+                }
+            }
+        }
+    });
 }
 
 TEST(Ink, OfACircleIsItsLengthTimesTheWidth) {

@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <hwy/targets.h>
 #include <algorithm>
 #include <cmath>
 #include <memory>
@@ -14,6 +13,7 @@
 
 #include "accel/screen_tracer.h"
 #include "camera/camera.h"
+#include "instruction_sets.h"
 #include "scenes.h"
 
 /// What the screen tracer sees, held against other tracers.
@@ -219,19 +219,12 @@ inline void expect_same_bits(const HitPacket& a, int i, const HitPacket& b, int 
 inline void expect_same_bits_on_every_instruction_set(const Seen& seen) {
     const auto points = seen.pixels();
     const auto native = seen.trace(points);
-    int sets = 0;
-    for (const std::int64_t target : {HWY_SSSE3, HWY_SSE4, HWY_AVX2, HWY_AVX3}) {
-        hwy::SetSupportedTargetsForTest(0);
-        if ((hwy::SupportedTargets() & target) == 0) continue;
-        hwy::SetSupportedTargetsForTest(target);
+    on_every_instruction_set([&] {
         const auto hits = seen.trace(points);
-        ++sets;
         for (std::size_t k = 0; k < points.size(); ++k) {
             for (int i = 0; i < kLanes; ++i) expect_same_bits(hits[k], i, native[k], i);
         }
-    }
-    hwy::SetSupportedTargetsForTest(0);
-    EXPECT_GE(sets, 1);
+    });
 }
 
 }  // namespace ink::test

@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <hwy/targets.h>
 #include <array>
 #include <cmath>
 #include <memory>
@@ -12,6 +11,7 @@
 
 #include "accel/screen_tracer.h"
 #include "camera/camera.h"
+#include "instruction_sets.h"
 #include "scenes.h"
 
 namespace ink::test {
@@ -273,13 +273,7 @@ TEST(ShadeForms, AreTheSameBitsForRastersAndPacketsOnEveryInstructionSet) {
         }
     };
     expect_same(view.shade_packets());
-    for (const std::int64_t target : {HWY_SSSE3, HWY_SSE4, HWY_AVX2, HWY_AVX3}) {
-        hwy::SetSupportedTargetsForTest(0);
-        if ((hwy::SupportedTargets() & target) == 0) continue;
-        hwy::SetSupportedTargetsForTest(target);
-        expect_same(view.shade_raster());
-    }
-    hwy::SetSupportedTargetsForTest(0);
+    on_every_instruction_set([&] { expect_same(view.shade_raster()); });
 }
 
 TEST(ShadeForms, OfARasterEndWithItsPoints) {
