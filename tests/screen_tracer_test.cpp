@@ -319,6 +319,24 @@ TEST(ScreenTracer, GivesRastersAndPacketsBesideThemTheHitsOfTheirPoints) {
     }
 }
 
+/// Most of them lie between the points, and are not looked at.
+TEST(ScreenTracer, FindsTrianglesThatAreSmallerThanTheSpacingOfPoints) {
+    const Seen seen({ball(64, 128)}, {}, {32, 32});
+    const auto points = seen.pixels();
+    const auto hits = seen.trace_raster(points);
+    const auto expected = seen.trace_brute_force(points);
+    int seen_ball = 0;
+    for (std::size_t k = 0; k < points.size(); ++k) {
+        for (int i = 0; i < kLanes; ++i) {
+            ASSERT_EQ(hits[k].object[i], expected[k].object[i]);
+            if (hits[k].object[i] == kNoObject) continue;
+            ++seen_ball;
+            ASSERT_NEAR(hits[k].t[i], expected[k].t[i], 1e-5);
+        }
+    }
+    EXPECT_GT(seen_ball, 400);
+}
+
 /// They have no bounds, and must leave those of their cluster alone, which are asked after its
 /// first use.
 TEST(ScreenTracer, GivesTheHitsOfSticksBesideOnesWithoutALength) {
