@@ -228,11 +228,13 @@ TEST(Representation, CutsSticksAloneInTheMiddleWhereColoursChange) {
     m.positions = {{0, 0, 0}, {1.2, 0, 0}, {1.2, 1.1, 0}};
     m.elements = {6, 6, 8};
     m.has_bond_table = true;
-    m.bonds = {{1, 2}};
+    m.bonds = {{1, 2}, {0, 1}};
     const auto objects =
         represent(m, {.representation = Representation::sticks, .stick_radius = 0.3});
     const auto& sticks = std::get<Glyphs>(objects.at(1).shape);
-    EXPECT_EQ(sticks.colors, (std::vector<Rgb8>{element(6).color, element(8).color}));
+    const Rgb8 carbon = element(6).color;
+    EXPECT_EQ(sticks.colors, (std::vector<Rgb8>{carbon, element(8).color, carbon}));
+    EXPECT_EQ(sticks.other_half, (std::vector<std::int8_t>{1, -1, 0}));
     EXPECT_FLOAT_EQ(spheres(objects).spheres[2].radius, 0.3F);
     EXPECT_NEAR(glyph_bounds(sticks.shape, sticks.placements[0]).upper.y, 0.55F, 1e-5F);
     EXPECT_EQ(objects[0].usual_ids, IdLevel::object);

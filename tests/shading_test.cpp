@@ -118,12 +118,14 @@ TEST(Materials, AreForTheObjectThatIsNamedOrCounted) {
 // Borders of colour on sticks
 
 /// A stick in two halves, the first red, the second blue, that meet at a point.
-Scene two_colored_stick(Vec3d middle, Vec3d half) {
+Scene two_colored_stick(Vec3d middle, Vec3d half, std::vector<std::uint32_t> parts = {}) {
     Glyphs sticks;
     sticks.shape = {.kind = GlyphKind::frustum, .capped = false};
     sticks.placements = {placement_between(middle - half, middle, 6.0),
                          placement_between(middle, middle + half, 6.0)};
     sticks.colors = {{255, 0, 0}, {0, 0, 255}};
+    sticks.other_half = {1, -1};
+    sticks.parts = std::move(parts);
     Object object;
     object.kind = ObjectKind::molecule;
     object.usual_ids = IdLevel::object;
@@ -202,11 +204,21 @@ TEST(StickBorders, AreSmoothOnSticksThatLeanTowardsTheEye) {
 }
 
 TEST(StickBorders, AreSmoothedOnceWhereALineRunsAlongThem) {
-    const Scene scene = two_colored_stick({0.4, 0, 0}, {12, 0, 0});
-    const std::vector<float> seen = redness(scene, 1, "edges", IdLevel::primitive);
+    const Scene scene = two_colored_stick({0.4, 0, 0}, {12, 0, 0}, {0, 1});
     const std::vector<float> as_one = redness(scene, 1, "edges");
-    for_each_inner_pixel({0.4, 0, 0}, {12, 0, 0},
-                         [&](std::size_t k) { EXPECT_NEAR(seen[k], as_one[k], 0.02); });
+    for (const IdLevel ids : {IdLevel::primitive, IdLevel::part}) {
+        const std::vector<float> seen = redness(scene, 1, "edges", ids);
+        for_each_inner_pixel({0.4, 0, 0}, {12, 0, 0},
+                             [&](std::size_t k) { EXPECT_NEAR(seen[k], as_one[k], 0.02); });
+    }
+}
+
+TEST(StickBorders, AreSmoothWithinAPart) {
+    const Vec3d half{12, 0, 0};
+    const std::vector<float> seen =
+        redness(two_colored_stick({0.4, 0, 0}, half, {7, 7}), 1, "edges", IdLevel::part);
+    const std::vector<float> as_one = redness(two_colored_stick({0.4, 0, 0}, half), 1, "edges");
+    for_each_inner_pixel({0.4, 0, 0}, half, [&](std::size_t k) { EXPECT_EQ(seen[k], as_one[k]); });
 }
 
 TEST(StickBorders, AreSharpWithoutSmoothing) {

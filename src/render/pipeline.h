@@ -62,9 +62,7 @@ struct Pipeline {
         }
         if (traces && all.smoothing().kind == AntiAliasing::Kind::edges) {
             shader.smooth_sticks(scene, camera, 1.0F / static_cast<float>(all.lattice_points()),
-                                 [&](std::uint32_t object, std::uint32_t a, std::uint32_t b) {
-                                     return ids.resolve(object, a) == ids.resolve(object, b);
-                                 });
+                                 ids.levels());
         }
         if (!all.aovs.empty()) aovs.emplace(scene, camera, all.aovs, locates(), target);
     }

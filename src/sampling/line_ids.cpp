@@ -118,6 +118,13 @@ bool LineIds::of_one_whole(GeometryId a, GeometryId b) const {
            (*first.wholes)[offset % a_copy] == (*second.wholes)[other % a_copy];
 }
 
+std::vector<IdLevel> LineIds::levels() const {
+    std::vector<IdLevel> levels;
+    levels.reserve(objects_.size());
+    for (const ObjectIds& object : objects_) levels.push_back(object.level);
+    return levels;
+}
+
 std::size_t LineIds::object_of(GeometryId id) const {
     const auto after = std::ranges::upper_bound(objects_, id, {}, &ObjectIds::first);
     return static_cast<std::size_t>(after - objects_.begin()) - 1;

@@ -37,6 +37,8 @@ class LineIds {
     /// The first ID of an object of the scene, and at which level its own are told apart.
     GeometryId first(std::size_t object) const { return objects_[object].first; }
     IdLevel level(std::size_t object) const { return objects_[object].level; }
+    /// Of all objects.
+    std::vector<IdLevel> levels() const;
 
   private:
     LineIds() = default;

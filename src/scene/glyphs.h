@@ -71,6 +71,9 @@ struct Glyphs {
     std::vector<std::uint32_t> parts;  ///< index into the object's `part_names`
     std::vector<Copy> copies{};        ///< see CopyNumbering
     std::uint32_t parts_a_copy = 0;
+    /// Of sticks in two halves: from each to the one of another colour that goes on from it, 1 or
+    /// -1; 0 where none does. Empty: there are no such halves.
+    std::vector<std::int8_t> other_half{};
 
     CopyNumbering numbering() const { return {copies, placements.size(), parts_a_copy}; }
     std::size_t count() const { return numbering().count(); }

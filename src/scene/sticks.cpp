@@ -52,11 +52,16 @@ class StickBuilder {
         const Vec3d middle = (a.place + b.place) * 0.5;
         add(a.place, middle, a.color, a.part);
         add(middle, b.place, b.color, b.part);
+        if (same_color) return;
+        sticks_.other_half.resize(sticks_.placements.size());
+        sticks_.other_half.end()[-2] = 1;
+        sticks_.other_half.end()[-1] = -1;
     }
 
     /// The sticks as one thing with `atoms`.
     std::optional<Object> finish(const Object& atoms) && {
         if (sticks_.placements.empty()) return std::nullopt;
+        if (!sticks_.other_half.empty()) sticks_.other_half.resize(sticks_.placements.size());
         if (!has_parts(atoms.shape)) sticks_.parts.clear();
         sticks_.parts_a_copy = numbering(atoms.shape).parts_a_copy;
         Object object;

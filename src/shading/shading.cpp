@@ -127,13 +127,12 @@ void Shader::add_surface(const Object& object, const ResolvedMaterial& material,
 }
 
 void Shader::smooth_sticks(const Scene& scene, const Camera& camera, float spacing,
-                           const StickBorders::SeenAsOne& seen_as_one) {
+                           std::span<const IdLevel> ids) {
     stick_borders_.emplace(camera.projection(), spacing);
-    for (std::uint32_t k = 0; k < surfaces_.size(); ++k) {
+    for (std::size_t k = 0; k < surfaces_.size(); ++k) {
         const bool colored = surfaces_[k].primitive_colors != nullptr;
-        stick_borders_->add(scene.objects()[k], [&](std::uint32_t a, std::uint32_t b) {
-            return colored && seen_as_one(k, a, b);
-        });
+        stick_borders_->add(colored ? std::get_if<Glyphs>(&scene.objects()[k].shape) : nullptr,
+                            ids[k]);
     }
     if (!stick_borders_->any()) stick_borders_.reset();
 }

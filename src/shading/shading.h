@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "accel/tracer.h"
@@ -57,11 +58,10 @@ class Shader {
     /// What the shares of light from all around are asked for; null: everything lies open.
     void use(const AmbientOcclusion* ambient) { ambient_ = ambient; }
 
-    /// Smooths the borders of colour on sticks, along which no line runs that would do so:
-    /// `seen_as_one` tells it of two primitives of an object. A sample stands for a square of
-    /// `spacing` pixels.
+    /// Smooths the borders of colour on sticks where no line runs along them that would do so:
+    /// `ids` has the level of each object. A sample stands for a square of `spacing` pixels.
     void smooth_sticks(const Scene& scene, const Camera& camera, float spacing,
-                       const StickBorders::SeenAsOne& seen_as_one);
+                       std::span<const IdLevel> ids);
 
     /// Colours of what a packet saw. Normals must be of unit length and face the viewer. False
     /// where all of it is background.

@@ -2,28 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <variant>
+#include <vector>
 
 namespace ink {
 
 namespace {
-
-/// Open cylinders, as bonds are.
-const Glyphs* sticks_of(const Object& object) {
-    const auto* glyphs = std::get_if<Glyphs>(&object.shape);
-    const bool are_sticks = glyphs != nullptr && glyphs->shape.kind == GlyphKind::frustum &&
-                            glyphs->shape.a == 1.0 && !glyphs->shape.capped &&
-                            !glyphs->colors.empty();
-    return are_sticks ? glyphs : nullptr;
-}
-
-/// Whether a stick ends where the next begins, and goes on in its direction.
-bool goes_on(const Placement& a, const Placement& b) {
-    constexpr float kNear = 0.02F;  // of the radius; places are rounded
-    const float least = kNear * length(a.x_axis);
-    return length((a.origin + a.z_axis) - (b.origin - b.z_axis)) <= least &&
-           length(a.z_axis - b.z_axis) <= least;
-}
 
 /// Share of a square of side 1 in which a linear function is positive that is `value` in its middle
 /// and changes by `x` and `y`, neither negative, from side to side.
@@ -56,31 +39,26 @@ StickBorders::StickBorders(const Projection& projection, float spacing)
       origin_step_(static_cast<float>(projection.origin_step)),
       slope_step_(static_cast<float>(projection.slope_step)) {}
 
-void StickBorders::add(const Object& object,
-                       const std::function<bool(std::uint32_t a, std::uint32_t b)>& mixes) {
-    Halves& halves = objects_.emplace_back();
-    const Glyphs* const sticks = sticks_of(object);
-    if (sticks == nullptr) return;
-    halves.other.resize(sticks->placements.size());
-    for (std::uint32_t k = 0; k + 1 < halves.other.size(); ++k) {
-        if (sticks->colors[k] == sticks->colors[k + 1] ||
-            !goes_on(sticks->placements[k], sticks->placements[k + 1]) || !mixes(k, k + 1)) {
-            continue;
-        }
-        halves.other[k] = 1;
-        halves.other[++k] = -1;
-        halves.sticks = sticks;
-        any_ = true;
-    }
+void StickBorders::add(const Glyphs* glyphs, IdLevel ids) {
+    const bool smooths =
+        glyphs != nullptr && !glyphs->other_half.empty() && ids != IdLevel::primitive;
+    objects_.push_back({smooths ? glyphs : nullptr, ids == IdLevel::part});
+    any_ |= smooths;
 }
 
-StickBorders::Border StickBorders::border_of(const Halves& halves, std::size_t primitive) const {
-    const std::size_t stored = halves.sticks->numbering().source(primitive);
-    const bool is_first = halves.other[stored] > 0;
-    const Placement place = halves.sticks->at(primitive);
-    const Vec3f to_end = is_first ? place.z_axis : -place.z_axis;
+std::size_t StickBorders::other_half(const Sticks& sticks, std::size_t stored) {
+    const std::vector<std::uint32_t>& parts = sticks.glyphs->parts;
+    const std::size_t other = stored + static_cast<std::size_t>(sticks.glyphs->other_half[stored]);
+    return sticks.by_parts && parts[stored] != parts[other] ? stored : other;
+}
+
+StickBorders::Border StickBorders::border_of(const Glyphs& glyphs, std::size_t primitive) {
+    const std::size_t stored = glyphs.numbering().source(primitive);
+    const int to_other = glyphs.other_half[stored];
+    const Placement place = glyphs.at(primitive);
+    const Vec3f to_end = to_other > 0 ? place.z_axis : -place.z_axis;
     return {place.origin + to_end, to_end * (-1.0F / length(to_end)),
-            halves.sticks->colors[is_first ? stored + 1 : stored - 1]};
+            glyphs.colors[stored + static_cast<std::size_t>(to_other)]};
 }
 
 /// Share of a lane's pixel that lies beyond the border of the half that it hit.
@@ -114,12 +92,13 @@ void StickBorders::mix(const SurfacePacket& surface, ColorLanes& colors) const {
     Border border{};
     for (int i = 0; i < kLanes; ++i) {
         const std::uint32_t object = surface.hits.object[i];
-        if (object == kNoObject || objects_[object].sticks == nullptr) continue;
-        const Halves& halves = objects_[object];
+        if (object == kNoObject || objects_[object].glyphs == nullptr) continue;
+        const Glyphs& glyphs = *objects_[object].glyphs;
         const std::uint32_t primitive = surface.hits.primitive[i];
-        if (halves.other[halves.sticks->numbering().source(primitive)] == 0) continue;
+        const std::size_t stored = glyphs.numbering().source(primitive);
+        if (other_half(objects_[object], stored) == stored) continue;
         if (object != last_object || primitive != last_primitive) {
-            border = border_of(halves, primitive);
+            border = border_of(glyphs, primitive);
             last_object = object;
             last_primitive = primitive;
         }

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <vector>
 
 #include "accel/projection.h"
@@ -15,32 +14,30 @@ namespace ink {
 /// cuts have a share of both colours, as those along lines have; no line tells where.
 class StickBorders {
   public:
-    using SeenAsOne = std::function<bool(std::uint32_t object, std::uint32_t a, std::uint32_t b)>;
-
     /// A sample stands for a square of `spacing` pixels.
     StickBorders(const Projection& projection, float spacing);
 
-    /// The next object of the scene. Keeps a reference to its shape. `mixes` tells of two halves
-    /// whether they are smoothed.
-    void add(const Object& object,
-             const std::function<bool(std::uint32_t a, std::uint32_t b)>& mixes);
+    /// The next object of the scene: its glyphs, which must outlive this, or null if it has none in
+    /// colours of their own. Where `ids` tell two halves apart, a line runs between them.
+    void add(const Glyphs* glyphs, IdLevel ids);
     bool any() const { return any_; }
 
     /// Mixes into the colours of halves of sticks, by area, that of their other halves.
     void mix(const SurfacePacket& surface, ColorLanes& colors) const;
 
   private:
-    /// The halves of an object's sticks.
-    struct Halves {
-        const Glyphs* sticks = nullptr;  ///< null: the object has none
-        /// From each to the one that goes on from it in another colour: 1, -1; 0: there is none.
-        std::vector<std::int8_t> other;
+    /// An object's sticks.
+    struct Sticks {
+        const Glyphs* glyphs;  ///< null: no halves of any are smoothed
+        bool by_parts;         ///< only of those whose halves are of one part
     };
     struct Border;
-    Border border_of(const Halves& halves, std::size_t primitive) const;
+    /// The other half of a stored one, if the border between them is smoothed, or else itself.
+    static std::size_t other_half(const Sticks& sticks, std::size_t stored);
+    static Border border_of(const Glyphs& glyphs, std::size_t primitive);
     float beyond(const Border& border, const SurfacePacket& surface, int lane) const;
 
-    std::vector<Halves> objects_;
+    std::vector<Sticks> objects_;
     bool any_ = false;
     float spacing_;
     // See Projection.
