@@ -1,194 +1,18 @@
 #include "film/film.h"
 
 #include <algorithm>
-#include <cmath>
-#include <cstring>
 #include <utility>
 #include <variant>
 
 #include <hwy/cache_control.h>
-#include <hwy/highway.h>
 
-#include "base/multiversion.h"
 #include "film/opaque_ink.h"
+#include "film/plane_blocks.h"
 #include "film/srgb_bytes.h"
 
 namespace ink {
 
 namespace {
-
-namespace hn = hwy::HWY_NAMESPACE;
-
-// Four lanes are what every processor has.
-template <class T>
-constexpr hn::FixedTag<T, kBlockSide> kRow;
-
-/// srgb_encode without branches or pow: 1.055 x^(1/2.4) - 0.055 is a power of the fourth root,
-/// 1.055 y^(5/3) - 0.055, fitted by a Chebyshev polynomial over the curve's range. Within 2e-6.
-INKTRACE_INLINE float encode(float linear) {
-    const float x = std::min(std::max(linear, 0.0F), 1.0F);
-    const float y = std::sqrt(std::sqrt(x));
-    const float curve =
-        -0.0596417498F +
-        y * (0.140776781F + y * (1.36022559F + y * (-0.838965334F +
-                                                    y * (0.638769462F + y * (-0.306036986F +
-                                                                             y * 0.0648733212F)))));
-    return x <= 0.0031308F ? 12.92F * x : curve;
-}
-
-INKTRACE_INLINE bool is_opaque(const ColorPacket& c) {
-    std::int32_t clear = 0;
-    for (int i = 0; i < kLanes; ++i) clear |= c.a[i] != 1.0F ? 1 : 0;
-    return clear == 0;
-}
-
-INKTRACE_INLINE void unpremultiply(ColorPacket& c) {
-    for (int i = 0; i < kLanes; ++i) {
-        const float inverse = c.a[i] > 0.0F ? 1.0F / c.a[i] : 0.0F;
-        c.r[i] *= inverse;
-        c.g[i] *= inverse;
-        c.b[i] *= inverse;
-    }
-}
-
-INKTRACE_INLINE void premultiply(ColorPacket& c) {
-    for (int i = 0; i < kLanes; ++i) {
-        c.r[i] *= c.a[i];
-        c.g[i] *= c.a[i];
-        c.b[i] *= c.a[i];
-    }
-}
-
-/// Linear to display, premultiplied to premultiplied.
-INKTRACE_MULTIVERSION
-void encode(ColorPacket& c) {
-    const bool opaque = is_opaque(c);
-    if (!opaque) unpremultiply(c);
-    for (int i = 0; i < kLanes; ++i) c.r[i] = encode(c.r[i]);
-    for (int i = 0; i < kLanes; ++i) c.g[i] = encode(c.g[i]);
-    for (int i = 0; i < kLanes; ++i) c.b[i] = encode(c.b[i]);
-    if (!opaque) premultiply(c);
-}
-
-void decode(ColorPacket& c) {
-    unpremultiply(c);
-    for (Lanes<float>* channel : {&c.r, &c.g, &c.b}) {
-        for (float& value : *channel) value = srgb_decode(value);
-    }
-    premultiply(c);
-}
-
-/// To bytes R, G, B, A with straight alpha.
-INKTRACE_MULTIVERSION
-void pack(ColorPacket& c, Lanes<std::uint32_t>& bytes) {
-    if (!is_opaque(c)) unpremultiply(c);
-    for (int i = 0; i < kLanes; ++i) {
-        const auto quantize = [](float v) {
-            return static_cast<std::int32_t>(std::min(std::max(v, 0.0F), 1.0F) * 255.0F + 0.5F);
-        };
-        bytes[i] = static_cast<std::uint32_t>(quantize(c.r[i]) | quantize(c.g[i]) << 8 |
-                                              quantize(c.b[i]) << 16) |
-                   static_cast<std::uint32_t>(quantize(c.a[i])) << 24U;
-    }
-}
-
-/// Bytes with straight alpha, premultiplied.
-INKTRACE_INLINE void unpack(const Lanes<std::uint32_t>& bytes, ColorPacket& c) {
-    constexpr float kScale = 1.0F / 255.0F;
-    const auto channel = [](std::uint32_t pixel, unsigned shift) {
-        return static_cast<float>(static_cast<std::int32_t>((pixel >> shift) & 0xFFU)) * kScale;
-    };
-    for (int i = 0; i < kLanes; ++i) c.a[i] = channel(bytes[i], 24);
-    for (int i = 0; i < kLanes; ++i) c.r[i] = channel(bytes[i], 0) * c.a[i];
-    for (int i = 0; i < kLanes; ++i) c.g[i] = channel(bytes[i], 8) * c.a[i];
-    for (int i = 0; i < kLanes; ++i) c.b[i] = channel(bytes[i], 16) * c.a[i];
-}
-
-/// `ink` is the colour times alpha.
-INKTRACE_INLINE void lay_over(const Lanes<float>& alpha, const Lanes<float>& ink,
-                              Lanes<float>& channel) {
-    for (int i = 0; i < kLanes; ++i) channel[i] = channel[i] * (1.0F - alpha[i]) + ink[i];
-}
-
-INKTRACE_MULTIVERSION
-void lay_ink(const Film::BlockInk& ink, ColorPacket& colors) {
-    std::size_t channel = 0;
-    Lanes<float> own;
-    for (auto* lanes : {&colors.r, &colors.g, &colors.b}) {
-        if (ink.color) {
-            const std::array<float, 3> color{ink.color->r, ink.color->g, ink.color->b};
-            for (int i = 0; i < kLanes; ++i) own[i] = ink.alpha[i] * color[channel];
-        } else {
-            std::copy_n(ink.colors[channel], kLanes, own.data());
-        }
-        lay_over(ink.alpha, own, *lanes);
-        ++channel;
-    }
-    lay_over(ink.alpha, ink.alpha, colors.a);
-}
-
-/// Keeps what is below where there is no ink: through colours and back it might be rounded.
-INKTRACE_MULTIVERSION
-void lay_ink(const Film::BlockInk& ink, Lanes<std::uint32_t>& bytes) {
-    ColorPacket c;
-    unpack(bytes, c);
-    const Color color = ink.color.value_or(Color{});
-    if (ink.color) {
-        for (int i = 0; i < kLanes; ++i) {
-            const float alpha = ink.alpha[i];
-            c.r[i] = c.r[i] * (1.0F - alpha) + alpha * color.r;
-            c.g[i] = c.g[i] * (1.0F - alpha) + alpha * color.g;
-            c.b[i] = c.b[i] * (1.0F - alpha) + alpha * color.b;
-        }
-    } else {
-        for (int i = 0; i < kLanes; ++i) {
-            const float clear = 1.0F - ink.alpha[i];
-            c.r[i] = c.r[i] * clear + ink.colors[0][i];
-            c.g[i] = c.g[i] * clear + ink.colors[1][i];
-            c.b[i] = c.b[i] * clear + ink.colors[2][i];
-        }
-    }
-    lay_over(ink.alpha, ink.alpha, c.a);
-    unpremultiply(c);
-    for (int i = 0; i < kLanes; ++i) {
-        const auto quantize = [](float v) {
-            return static_cast<std::int32_t>(std::min(std::max(v, 0.0F), 1.0F) * 255.0F + 0.5F);
-        };
-        const auto mixed = static_cast<std::uint32_t>(quantize(c.r[i]) | quantize(c.g[i]) << 8 |
-                                                      quantize(c.b[i]) << 16) |
-                           static_cast<std::uint32_t>(quantize(c.a[i])) << 24U;
-        bytes[i] = ink.alpha[i] != 0.0F ? mixed : bytes[i];
-    }
-}
-
-INKTRACE_MULTIVERSION
-void accumulate(const ColorPacket& shaded, const ColorPacket& blend_space,
-                const Lanes<float>& strength, PixelSums& __restrict sums) {
-    for (int i = 0; i < kLanes; ++i) {
-        sums.shaded.r[i] += shaded.r[i];
-        sums.shaded.g[i] += shaded.g[i];
-        sums.shaded.b[i] += shaded.b[i];
-        sums.shaded.a[i] += shaded.a[i];
-        sums.covered.r[i] += strength[i] * blend_space.r[i];
-        sums.covered.g[i] += strength[i] * blend_space.g[i];
-        sums.covered.b[i] += strength[i] * blend_space.b[i];
-        sums.covered.a[i] += strength[i] * blend_space.a[i];
-        sums.ink[i] += strength[i];
-    }
-}
-
-/// The mean shaded colour (in the blend space), less what the ink hides, plus the ink.
-INKTRACE_MULTIVERSION
-void lay_mean_ink(const PixelSums& sums, Color line, ColorPacket& colors) {
-    const float weight = 1.0F / static_cast<float>(sums.samples);
-    for (int i = 0; i < kLanes; ++i) {
-        const float ink = sums.ink[i] * weight;
-        colors.r[i] = std::max(colors.r[i] - sums.covered.r[i] * weight + ink * line.r, 0.0F);
-        colors.g[i] = std::max(colors.g[i] - sums.covered.g[i] * weight + ink * line.g, 0.0F);
-        colors.b[i] = std::max(colors.b[i] - sums.covered.b[i] * weight + ink * line.b, 0.0F);
-        colors.a[i] = std::max(colors.a[i] - sums.covered.a[i] * weight + ink, 0.0F);
-    }
-}
 
 bool has_ink(const Lanes<float>& strength) {
     float most = 0.0F;
@@ -202,97 +26,6 @@ ColorPacket constant(Color color, float alpha) {
 }
 
 constexpr std::array kChannels{&ColorPacket::r, &ColorPacket::g, &ColorPacket::b, &ColorPacket::a};
-
-/// Copies the pixels of a block that lie on the film.
-template <class T>
-void copy_block(Size size, int x, int y, const Lanes<T>& block, T* plane) {
-    const auto width = static_cast<std::size_t>(size.width);
-    T* row = plane + static_cast<std::size_t>(y) * width + static_cast<std::size_t>(x);
-    const T* from = block.data();
-    if (x + kBlockSide <= size.width && y + kBlockSide <= size.height) {
-        for (int j = 0; j < kBlockSide; ++j) {
-            std::memcpy(row, from, kBlockSide * sizeof(T));
-            row += width;
-            from += kBlockSide;
-        }
-        return;
-    }
-    for (int j = 0; j < std::min(kBlockSide, size.height - y); ++j) {
-        std::copy_n(from, std::min(kBlockSide, size.width - x), row);
-        row += width;
-        from += kBlockSide;
-    }
-}
-
-/// lay_over on a plane: where there is no ink, x * 1 + 0 is x.
-INKTRACE_INLINE void lay_on_plane(Size size, int x, int y, const Lanes<float>& alpha,
-                                  const Lanes<float>& ink, float* plane) {
-    const auto width = static_cast<std::size_t>(size.width);
-    float* row = plane + static_cast<std::size_t>(y) * width + static_cast<std::size_t>(x);
-    const int columns = std::min(kBlockSide, size.width - x);
-    const int rows = std::min(kBlockSide, size.height - y);
-    const auto lay = [&](int j, int i) {
-        const int lane = j * kBlockSide + i;
-        row[i] = row[i] * (1.0F - alpha[lane]) + ink[lane];
-    };
-    for (int j = 0; j < rows; ++j, row += width) {
-        if (columns == kBlockSide) {
-            for (int i = 0; i < kBlockSide; ++i) lay(j, i);
-        } else {
-            for (int i = 0; i < columns; ++i) lay(j, i);
-        }
-    }
-}
-
-/// copy_block of blocks side by side, row after row. Whole cache lines go to memory past the
-/// caches, which otherwise read what is then overwritten; whoever is to see them waits for
-/// finish_rows().
-template <class T>
-void copy_blocks(Size size, int x, int y, std::span<const Lanes<T>* const> blocks, T* plane) {
-    const auto width = static_cast<std::size_t>(size.width);
-    T* row = plane + static_cast<std::size_t>(y) * width + static_cast<std::size_t>(x);
-    const auto whole =
-        std::min(blocks.size(), static_cast<std::size_t>((size.width - x) / kBlockSide));
-    constexpr std::size_t kLine = 64 / (kBlockSide * sizeof(T));  // blocks to a cache line
-    constexpr std::size_t kLarge = std::size_t{1} << 20;  // a picture of less may stay in a cache
-    const bool large = size.pixels() * sizeof(T) >= kLarge;
-    for (int j = 0; j < std::min(kBlockSide, size.height - y); ++j, row += width) {
-        const auto values = [&](std::size_t k) {
-            return hn::Load(kRow<T>, blocks[k]->data() + j * kBlockSide);
-        };
-        for (std::size_t k = 0; k < whole;) {
-            T* const to = row + k * kBlockSide;
-            if (large && reinterpret_cast<std::uintptr_t>(to) % 64 == 0 && k + kLine <= whole) {
-                for (std::size_t n = 0; n < kLine; ++n) {
-                    hn::Stream(values(k + n), kRow<T>, to + n * kBlockSide);
-                }
-                k += kLine;
-            } else {
-                hn::StoreU(values(k++), kRow<T>, to);
-            }
-        }
-    }
-    if (whole == blocks.size()) return;
-    copy_block(size, x + static_cast<int>(whole) * kBlockSide, y, *blocks[whole], plane);
-}
-
-/// The other way; pixels beyond the film's edge are left as they are.
-template <class T>
-void load_block(Size size, int x, int y, const T* plane, Lanes<T>& block) {
-    const auto width = static_cast<std::size_t>(size.width);
-    const T* row = plane + static_cast<std::size_t>(y) * width + static_cast<std::size_t>(x);
-    T* to = block.data();
-    const bool whole = x + kBlockSide <= size.width;
-    for (int j = 0; j < std::min(kBlockSide, size.height - y); ++j) {
-        if (whole) {
-            std::memcpy(to, row, kBlockSide * sizeof(T));
-        } else {
-            std::copy_n(row, size.width - x, to);
-        }
-        row += width;
-        to += kBlockSide;
-    }
-}
 
 }  // namespace
 
@@ -323,7 +56,7 @@ void Film::add(const ColorPacket& shaded, const Lanes<float>& strength, PixelSum
     const ColorPacket& below = settings_.compose == Compose::lines ? paper_ : shaded;
     ColorPacket blend_space = below;
     // What no line covers needs no blending.
-    if (settings_.blend == BlendSpace::display && has_ink(strength)) encode(blend_space);
+    if (settings_.blend == BlendSpace::display && has_ink(strength)) srgb_encode(blend_space);
     accumulate(below, blend_space, strength, sums);
     ++sums.samples;
 }
@@ -335,7 +68,7 @@ void Film::put(int x, int y, const PixelSums& sums) {
         for (float& value : *channel) value *= weight;
     }
     if (!has_ink(sums.ink)) return put(x, y, colors);
-    if (settings_.blend == BlendSpace::display) encode(colors);
+    if (settings_.blend == BlendSpace::display) srgb_encode(colors);
     lay_mean_ink(sums, line_, colors);
     Block block;
     finish(colors, block);
@@ -394,7 +127,7 @@ void Film::finish_shaded(const ColorPacket& shaded, Block& block) const {
 void Film::finish(ColorPacket& blended, Block& block) const {
     if (settings_.linear) {
         block.linear = blended;
-        if (settings_.blend == BlendSpace::display) decode(block.linear);
+        if (settings_.blend == BlendSpace::display) srgb_decode(block.linear);
     }
     if (!settings_.display) return;
     if (settings_.blend == BlendSpace::linear) {
@@ -499,11 +232,11 @@ ColorPacket Film::in_blend_space(const Block& block) const {
     ColorPacket colors{};
     if (settings_.linear) {
         colors = block.linear;
-        if (settings_.blend == BlendSpace::display) encode(colors);
+        if (settings_.blend == BlendSpace::display) srgb_encode(colors);
         return colors;
     }
     unpack(block.display, colors);
-    if (settings_.blend == BlendSpace::linear) decode(colors);
+    if (settings_.blend == BlendSpace::linear) srgb_decode(colors);
     return colors;
 }
 

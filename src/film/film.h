@@ -3,7 +3,6 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -12,6 +11,7 @@
 #include "base/color.h"
 #include "base/image.h"
 #include "base/lanes.h"
+#include "film/blend.h"
 #include "shading/shading.h"
 
 namespace ink {
@@ -37,15 +37,6 @@ struct FilmSettings {
     bool transparent_background = false;
     bool display = true;  ///< make 8-bit sRGB pixels
     bool linear = false;  ///< make linear float pixels
-};
-
-/// Samples of sixteen pixels on their way to the film. Sums over samples, so that their mean can be
-/// taken in linear light while lines are mixed in the blend space.
-struct PixelSums {
-    ColorPacket shaded{};   ///< linear, premultiplied
-    ColorPacket covered{};  ///< what ink hides: strength times colour in the blend space
-    Lanes<float> ink{};     ///< line strength
-    int samples = 0;
 };
 
 /// The picture while it is rendered. Blocks of 4 x 4 pixels are disjoint, so threads need no lock;
@@ -81,11 +72,6 @@ class Film {
     void put_pixel(int x, int y, const std::array<float, 4>& shaded);
 
     /// Lays ink over the finished block at (x, y).
-    struct BlockInk {
-        const Lanes<float>& alpha;
-        std::optional<Color> color;          ///< one for all pixels, blend space; or else
-        std::array<const float*, 3> colors;  ///< one each, times alpha
-    };
     void lay_ink(int x, int y, const BlockInk& ink);
 
     /// The lines' colour in the blend space, and any other.

@@ -290,7 +290,7 @@ void LineDrawer::write(const Tile& tile) {
         if (!ink_.touched(k)) continue;
         const int x = tile.x0 + static_cast<int>(k % across) * kBlockSide;
         const int y = tile.y0 + static_cast<int>(k / across) * kBlockSide;
-        Film::BlockInk ink{ink_.alpha_of_block(k), ink_.uniform_color(), {}};
+        BlockInk ink{ink_.alpha_of_block(k), ink_.uniform_color(), {}};
         for (std::size_t c = 0; c < 3 && !ink.color; ++c) {
             ink.colors[c] = ink_.color()[c].data() + k * kLanes;
         }
@@ -341,7 +341,7 @@ void LineDrawer::prefetch_row(const Tile& tile, int y, const Faces& faces) const
     }
 }
 
-void LineDrawer::lay(int x, int y, const Film::BlockInk& ink) {
+void LineDrawer::lay(int x, int y, const BlockInk& ink) {
     edges_.pipeline.film.lay_ink(x, y, ink);
     if (edges_.pipeline.aovs) edges_.pipeline.aovs->put_strength(Block{x, y}, ink.alpha);
 }

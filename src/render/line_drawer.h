@@ -49,7 +49,7 @@ class LineDrawer {
     void write_with_faces(const Tile& tile, const Faces& faces);
     template <class Faces>
     void prefetch_row(const Tile& tile, int y, const Faces& faces) const;
-    void lay(int x, int y, const Film::BlockInk& ink);
+    void lay(int x, int y, const BlockInk& ink);
 
     void leave_gap(const InkStroke& stroke);
     float width_scale(const InkStroke& stroke) const;
