@@ -10,11 +10,13 @@
 #include <vector>
 
 #include "base/parallel.h"
+#include "base/timer.h"
 #include "camera/views.h"
 #include "render/edges_method.h"
 #include "render/enlarge.h"
 #include "render/pipeline.h"
 #include "render/scaled.h"
+#include "render/work_loop.h"
 
 namespace ink {
 
@@ -148,10 +150,9 @@ Film render_draft(const Scene& scene, const Tracer& tracer, const Settings& sett
     RenderStats result;
     // From first to last, so that threads that come for one loop are there for the next.
     with_threads(wanted.threads, [&] {
-        const Pipeline small(scene, tracer, few, small_film, kept, true, control.ambient,
-                             control.cancel);
+        const Pipeline small(scene, tracer, few, small_film, kept, control);
         if (small.locates()) {
-            const Pipeline large(scene, tracer, wanted, film, inked, false);
+            const Pipeline large(scene, tracer, wanted, film, inked, control, Rays::none);
             result = render_fewer_rays(small, large, enlargement, control);
             return;
         }

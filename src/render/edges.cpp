@@ -224,7 +224,7 @@ bool Edges::cues_depth() const {
     return pipeline.settings.line_fade > 0.0 || pipeline.settings.line_taper > 0.0;
 }
 
-void Edges::temper(Segment& segment) const {
+void Edges::attenuate(Segment& segment) const {
     const Vec2f middle = (segment.a + segment.b) * 0.5F;
     if (cues_depth()) {
         const float depth = depth_at(middle, segment.t);

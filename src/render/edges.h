@@ -79,11 +79,11 @@ struct Edges {
     bool cues_depth() const;
     /// Whether some lines are drawn with less than the width of their style for what they are lines
     /// of: something far away, or small.
-    bool tempers_lines() const { return cues_depth() || small_things.any(); }
+    bool attenuates_lines() const { return cues_depth() || small_things.any(); }
     /// Makes a line so. The one place that asks what a line belongs to; what asks how dense lines
     /// are about it, LineThinning, waits until all are found, and counts them as wide as this
     /// leaves them.
-    void temper(Segment& segment) const;
+    void attenuate(Segment& segment) const;
 
     const Pipeline& pipeline;
     int q;  ///< lattice points along a pixel's side

@@ -3,6 +3,7 @@
 #include "render/edges.h"
 #include "render/line_search.h"
 #include "render/pipeline.h"
+#include "render/work_loop.h"
 
 namespace ink {
 

@@ -7,6 +7,7 @@
 
 #include <hwy/highway.h>
 
+#include "base/timer.h"
 #include "lines/coverage.h"
 
 namespace ink {

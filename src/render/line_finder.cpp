@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "base/multiversion.h"
+#include "base/timer.h"
 #include "render/block_mean.h"
 
 namespace ink {
@@ -17,8 +18,8 @@ constexpr std::size_t kMostPointsInPixel = std::size_t{kMostLatticePoints} * kMo
 
 /// Linear, premultiplied colour of a point of the grid.
 INKTRACE_INLINE PixelColor LineFinder::color_at(int i, int j) const {
-    const auto [k, place] = place_of(i, j);
-    const bool empty = k == kEmptyBlock;
+    const auto [k, place] = lattice_.place_of(i, j);
+    const bool empty = k == LatticeBlocks::kEmpty;
     const ColorPacket& colors = empty ? edges_.pipeline.shader.background() : colors_[k];
     const int lane = empty ? 0 : place;
     return {colors.r[lane], colors.g[lane], colors.b[lane], colors.a[lane]};
@@ -46,8 +47,8 @@ INKTRACE_INLINE void LineFinder::keep_stroke(const Segment& segment) {
 
 /// Whether a point of the grid saw a ball or the background, and which.
 INKTRACE_INLINE bool LineFinder::see_ball(int i, int j, BallHit& hit) const {
-    const auto [block, lane] = place_of(i, j);
-    if (block == kEmptyBlock) return true;
+    const auto [block, lane] = lattice_.place_of(i, j);
+    if (block == LatticeBlocks::kEmpty) return true;
     const HitPacket& hits = hits_[block];
     const std::uint32_t object = hits.object[lane];
     if (object == kNoObject) return true;
@@ -106,11 +107,11 @@ void LineFinder::gather_row(int x0, int x1, int y) {
     mixed_.clear();
     mixed_.reserve(count);  // what points to them stays
     const bool as_traced = edges_.q == 1;
-    const std::uint32_t* const blocks = &block_at_[static_cast<std::size_t>(
-        (y - grid_.y0) / kBlockSide * blocks_across_ + (x0 - grid_.x0) / kBlockSide)];
+    const std::uint32_t* const blocks =
+        &lattice_.block((x0 - grid_.x0) / kBlockSide, (y - grid_.y0) / kBlockSide);
     for (std::size_t n = 0; as_traced && n < count; ++n) {
         const std::uint32_t k = blocks[n];
-        if (k != kEmptyBlock && seen_[k] != 0) block_row_[n] = &colors_[k];
+        if (k != LatticeBlocks::kEmpty && seen_[k] != 0) block_row_[n] = &colors_[k];
     }
     if (as_traced && !changes) return;
     for (std::size_t n = 0; n < count; ++n) {
@@ -132,9 +133,9 @@ const ColorPacket* LineFinder::mixed_block(int x, int y) {
     std::size_t count = 0;
     for (int j = 0; j < q; ++j) {
         for (int i = 0; i < q; ++i) {
-            const std::uint32_t k = block_index(i0 + i, j0 + j);
-            blocks[count++] = k == kEmptyBlock ? &background : &colors_[k];
-            any |= k != kEmptyBlock && seen_[k] != 0;
+            const std::uint32_t k = lattice_.block(i0 + i, j0 + j);
+            blocks[count++] = k == LatticeBlocks::kEmpty ? &background : &colors_[k];
+            any |= k != LatticeBlocks::kEmpty && seen_[k] != 0;
         }
     }
     if (!any && !changes) return nullptr;
@@ -170,9 +171,9 @@ void LineFinder::keep_fringe(const Tile& tile) {
     }
     // Block by block, every `step`th of a block's pixels.
     const auto add = [&](int x, int y, int first, int step, int past) {
-        const std::uint32_t k = block_index(x / kBlockSide, y / kBlockSide);
+        const std::uint32_t k = lattice_.block(x / kBlockSide, y / kBlockSide);
         const ColorPacket& own =
-            k == kEmptyBlock ? edges_.pipeline.shader.background() : colors_[k];
+            k == LatticeBlocks::kEmpty ? edges_.pipeline.shader.background() : colors_[k];
         for (int lane = first; lane < past * step; lane += step) {
             fringe.colors.push_back({own.r[lane], own.g[lane], own.b[lane], own.a[lane]});
         }
@@ -223,10 +224,10 @@ void LineFinder::find_lines() {
 void LineFinder::measure_brightness() {
     brightness_.assign(grid_.id.size(), 1.0F);
     Lanes<float> bright;
-    for (std::size_t k = 0; k < blocks_.size(); ++k) {
+    for (std::size_t k = 0; k < lattice_.size(); ++k) {
         edges_.pipeline.shader.brightness(
             {sampler_.packets()[k], sampler_.points()[k], hits_[k], normals_[k]}, bright);
-        const Block& block = blocks_[k];
+        const Block& block = lattice_[k];
         for (int j = 0; j < block.rows; ++j) {
             for (int i = 0; i < block.columns; ++i) {
                 brightness_[grid_.index(block.x - grid_.x0 + i, block.y - grid_.y0 + j)] =
@@ -248,8 +249,8 @@ void LineFinder::find_tones() {
 
 /// Keeps the segments at hand, and smooths the shading along them.
 void LineFinder::keep() {
-    if (edges_.tempers_lines()) {
-        for (Segment& segment : segments_) edges_.temper(segment);
+    if (edges_.attenuates_lines()) {
+        for (Segment& segment : segments_) edges_.attenuate(segment);
     }
     if (edges_.halo_px > 0.0F && front_) {
         for (Segment& segment : segments_) segment.gap = gap_behind(segment);
@@ -338,8 +339,8 @@ void LineFinder::close_slits() {
     for (const auto slits : {mesh_locator_.slits(), locator_.slits()}) {
         for (const std::uint32_t k : slits) {
             const SuspectEdge& edge = suspects_[k];
-            const BlockPlace place = place_of(edge.i, edge.j);
-            if (place.block == kEmptyBlock) continue;
+            const LatticeBlocks::Place place = lattice_.place_of(edge.i, edge.j);
+            if (place.packet == LatticeBlocks::kEmpty) continue;
             const int i = edge.i + (edge.down ? 0 : 1);
             const int j = edge.j + (edge.down ? 1 : 0);
             closed_.push_back({place, edge.down, color_at(i, j)});
@@ -350,19 +351,19 @@ void LineFinder::close_slits() {
     // Where slits run on both sides, the one on the right counts.
     std::ranges::stable_partition(closed_, &ClosedPoint::down);
     for (const auto& [place, down, color] : closed_) {
-        ColorPacket& colors = colors_[place.block];
+        ColorPacket& colors = colors_[place.packet];
         colors.r[place.lane] = color[0];
         colors.g[place.lane] = color[1];
         colors.b[place.lane] = color[2];
         colors.a[place.lane] = color[3];
-        seen_[place.block] = 1;
+        seen_[place.packet] = 1;
     }
 }
 
 /// Whether a point of the grid saw a mesh that can be walked on or the background, and where.
 bool LineFinder::see_mesh(int i, int j, SurfaceKey& key) const {
-    const auto [block, lane] = place_of(i, j);
-    if (block == kEmptyBlock) return true;
+    const auto [block, lane] = lattice_.place_of(i, j);
+    if (block == LatticeBlocks::kEmpty) return true;
     const std::uint32_t object = hits_[block].object[lane];
     if (object == kNoObject) return true;
     key = {object, hits_[block].primitive[lane]};
@@ -385,8 +386,8 @@ void LineFinder::identify(std::span<const Vec2f> points, std::span<SurfaceKey> o
 void LineFinder::drop_smooth() {
     const auto number = [&](int i, int j) {
         if (fills_grid_) return grid_.surface[grid_.index(i, j)];
-        const BlockPlace place = place_of(i, j);
-        return surfaces_[place.block][place.lane];
+        const LatticeBlocks::Place place = lattice_.place_of(i, j);
+        return surfaces_[place.packet][place.lane];
     };
     first_numbers_.clear();
     second_numbers_.clear();

@@ -19,6 +19,7 @@
 #include "render/face_density.h"
 #include "render/face_map.h"
 #include "render/face_tiling.h"
+#include "render/lattice_blocks.h"
 #include "render/ridge_search.h"
 #include "render/specular_search.h"
 #include "render/tiles.h"
@@ -138,18 +139,15 @@ class LineFinder {
 
     bool can_take_shades() const;
     void trace_lattice(const Tile& tile);
-    void lay_blocks();
-    void lay_row(int row);
     void make_room();
     bool lays_strips() const;
-    std::uint32_t lay_block(const Block& block);
     void take(std::size_t first, std::size_t count);
     void fill_grid(std::size_t block);
     template <class T>
     void copy_to_grid(std::size_t block, const T* from, T* plane) const;
     void name_samples(std::size_t first, std::size_t count);
     SampleBlocks sample_blocks();
-    std::uint32_t cut_strip(std::uint32_t strip, int first, bool down);
+    std::uint32_t cut_strip(std::uint32_t strip, int first);
     void put_ends();
     void put_end(int i, int j);
     void keep_for_ridges(const Tile& tile);
@@ -175,8 +173,8 @@ class LineFinder {
     };
     /// What a point of the grid hit; it must not be background.
     LatticeHit hit_at(int i, int j) const {
-        const BlockPlace place = place_of(i, j);
-        return {&hits_[place.block], place.lane};
+        const auto [k, lane] = lattice_.place_of(i, j);
+        return {&hits_[k], lane};
     }
     void drop_smooth();
     bool is_smooth(const SuspectEdge& edge) const;
@@ -199,35 +197,15 @@ class LineFinder {
     void cross_all_faces();
     std::span<const std::uint8_t> face_cells() const;
     bool marked(int i, int j) const;
-    /// Where a point of the grid is.
-    struct BlockPlace {
-        std::uint32_t block;  ///< or kEmptyBlock
-        int lane;
-    };
     /// A lattice point that looks into a slit, and the colour that it takes.
     struct ClosedPoint {
-        BlockPlace place;
+        LatticeBlocks::Place place;
         bool down;  ///< the slit's far side is the point below
         PixelColor color;
     };
-    BlockPlace place_of(int i, int j) const {
-        if (i < columns_in_blocks_ && j < rows_in_blocks_) {
-            return {block_index(i / kBlockSide, j / kBlockSide),
-                    j % kBlockSide * kBlockSide + i % kBlockSide};
-        }
-        const bool down = i >= columns_in_blocks_;
-        const std::vector<std::uint32_t>& strips = down ? strips_down_ : strips_across_;
-        const int along = down ? j : i;
-        return {strips[static_cast<std::size_t>(along / kLanes)], along % kLanes};
-    }
-    std::uint32_t block_index(int i, int j) const {
-        return block_at_[static_cast<std::size_t>(j) * static_cast<std::size_t>(blocks_across_) +
-                         static_cast<std::size_t>(i)];
-    }
     PixelColor color_at(int i, int j) const;
     PixelColor pixel_color(int x, int y) const;
 
-    static constexpr std::uint32_t kEmptyBlock = 0xFFFFFFFFU;
     static constexpr std::uint8_t kCrossedRight = 1, kCrossedDown = 2, kMarked = 4;
 
     const Edges& edges_;
@@ -255,22 +233,18 @@ class LineFinder {
     std::optional<SpecularSearch> specular_;
     Connector connector_;
     SampleGrid grid_;
-    int columns_in_blocks_ = 0, rows_in_blocks_ = 0;  ///< of points; the rest are in strips
-    int blocks_across_ = 0;
-    std::vector<std::uint32_t> block_at_;  ///< of the tile's blocks, row by row; or kEmptyBlock
-    std::vector<std::uint32_t> strips_down_, strips_across_;  ///< of the last column and row
-    std::vector<Block> blocks_;
+    LatticeBlocks lattice_;  ///< what follows has an entry for each of its packets
     std::vector<HitPacket> hits_;
     std::vector<BorderPacket> border_packets_;
     std::vector<SidesPacket> sides_;
     std::vector<NormalPacket> normals_;
     std::vector<ColorPacket> colors_;
-    // Where the grid is not filled, of each block, and then of strips cut into blocks:
+    // Where the grid is not filled, and then of strips cut into blocks, too:
     std::vector<PlacePacket> places_;
     std::vector<Lanes<GeometryId>> ids_;
     std::vector<Lanes<std::uint32_t>> surfaces_;
     std::size_t cut_ = 0;                         ///< strips cut into blocks, and blocks before
-    std::vector<std::uint32_t> sample_block_at_;  ///< as block_at_, with these
+    std::vector<std::uint32_t> sample_block_at_;  ///< of all blocks, row by row
     std::vector<std::uint8_t> seen_;
     std::vector<const ColorPacket*> block_row_;  ///< of pixels, on their way to the film
     std::vector<ColorPacket> mixed_;             ///< those of them that differ from the lattice's

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 
+#include "base/timer.h"
 #include "render/line_finder.h"
 #include "render/nearest_edges.h"
 
@@ -15,7 +16,7 @@ void LineFinder::map_borders(std::size_t first, std::size_t count) {
     border_packets_.resize(count);
     sampler_.take_borders(first, border_packets_);
     for (std::size_t k = 0; k < count; ++k) {
-        const Block& block = blocks_[first + k];
+        const Block& block = lattice_[first + k];
         // Those cut off at the tile's end belong to the next tile, which may be at work.
         if (block.columns < kBlockSide || block.rows < kBlockSide) continue;
         if (face_density_) {
@@ -32,7 +33,7 @@ void LineFinder::map_tiling(std::size_t first, std::size_t count) {
     sides_.resize(count);
     const bool known = sampler_.take_sides(first, sides_);
     for (std::size_t k = 0; k < count; ++k) {
-        const Block& block = blocks_[first + k];
+        const Block& block = lattice_[first + k];
         if (block.columns < kBlockSide || block.rows < kBlockSide) continue;
         const HitPacket& hits = hits_[first + k];
         if (!tiling_->put(block.x, block.y, hits, known ? &sides_[k] : nullptr)) continue;
@@ -54,9 +55,9 @@ void LineFinder::map_tiling(std::size_t first, std::size_t count) {
 /// Keeps what pixel centres, or the lattice points next to them, see.
 void LineFinder::map_faces(const Tile& tile) {
     const Timer timer(stats_.lines_ms);
-    for (std::size_t k = 0; k < blocks_.size(); ++k) {
+    for (std::size_t k = 0; k < lattice_.size(); ++k) {
         // Those cut off at the tile's end belong to the next tile, which may be at work.
-        const bool whole = blocks_[k].columns == kBlockSide && blocks_[k].rows == kBlockSide;
+        const bool whole = lattice_[k].columns == kBlockSide && lattice_[k].rows == kBlockSide;
         if (whole) add_face_density(k);
     }
     for (int y = tile.y0; y < tile.y1; y += kBlockSide) {
@@ -68,8 +69,8 @@ void LineFinder::map_block(int x, int y) {
     const int q = edges_.q;
     if (q == 1) {
         const std::uint32_t block =
-            block_index((x - grid_.x0) / kBlockSide, (y - grid_.y0) / kBlockSide);
-        if (block == kEmptyBlock) return faces_->put_nothing(x, y);
+            lattice_.block((x - grid_.x0) / kBlockSide, (y - grid_.y0) / kBlockSide);
+        if (block == LatticeBlocks::kEmpty) return faces_->put_nothing(x, y);
         return faces_->put(x, y, hits_[block]);
     }
     faces_->put_nothing(x, y);
@@ -77,7 +78,7 @@ void LineFinder::map_block(int x, int y) {
         const int i = (x + n % kBlockSide) * q + q / 2 - grid_.x0;
         const int j = (y + n / kBlockSide) * q + q / 2 - grid_.y0;
         if (i >= grid_.width || j >= grid_.height) continue;  // beyond the picture
-        if (place_of(i, j).block == kEmptyBlock) continue;
+        if (lattice_.place_of(i, j).packet == LatticeBlocks::kEmpty) continue;
         const LatticeHit hit = hit_at(i, j);
         faces_->put(x + n % kBlockSide, y + n / kBlockSide, *hit.hits, hit.lane);
     }
@@ -85,7 +86,7 @@ void LineFinder::map_block(int x, int y) {
 
 /// The same for objects that may differ in the width of their lines.
 void LineFinder::add_face_density(std::size_t block) {
-    const Block& place = blocks_[block];
+    const Block& place = lattice_[block];
     const HitPacket& hits = hits_[block];
     const int changes = count_changes(hits.object, hits.primitive);
     if (changes == 0) return;

@@ -5,21 +5,9 @@
 #include <bit>
 
 #include "base/multiversion.h"
+#include "base/timer.h"
 
 namespace ink {
-
-namespace {
-
-ScreenBox screen_box(const Block& block, float spacing) {
-    const auto left = static_cast<float>(block.x);
-    const auto top = static_cast<float>(block.y);
-    const int columns = block.is_strip() ? block.columns : kBlockSide;
-    const int rows = block.is_strip() ? block.rows : kBlockSide;
-    return {left * spacing, top * spacing, (left + static_cast<float>(columns)) * spacing,
-            (top + static_cast<float>(rows)) * spacing};
-}
-
-}  // namespace
 
 /// A few blocks at a time, so that the hits of a block are still in the nearest cache when it is
 /// shaded and its samples go to the grid.
@@ -39,15 +27,16 @@ void LineFinder::trace_lattice(const Tile& tile) {
     sampler_.enter({static_cast<float>(tile.x0), static_cast<float>(tile.y0),
                     static_cast<float>(tile.x1) + beyond, static_cast<float>(tile.y1) + beyond});
 
-    lay_blocks();
+    // Of points that are shaded with an eye to their neighbours, all tiles must see the same ones.
+    lattice_.lay(grid_, sampler_, lays_strips(), edges_.pipeline.shader.compares_neighbours());
     make_room();
-    seen_.assign(blocks_.size(), 0);
-    sampler_.find_blocks(blocks_, {});
+    seen_.assign(lattice_.size(), 0);
+    sampler_.find_blocks(lattice_.packets(), {});
     saw_anything_ = false;
     if (face_density_) face_density_->enter(grid_.x0, grid_.y0, grid_.width, grid_.height);
     const std::size_t run = takes_shades_ ? 32 : 16;  // rays take as much room as all else
-    for (std::size_t first = 0; first < blocks_.size(); first += run) {
-        const std::size_t count = std::min(run, blocks_.size() - first);
+    for (std::size_t first = 0; first < lattice_.size(); first += run) {
+        const std::size_t count = std::min(run, lattice_.size() - first);
         take(first, count);
         timer.lap(stats_.trace_ms);
         if (borders_ != nullptr) {
@@ -62,16 +51,17 @@ void LineFinder::trace_lattice(const Tile& tile) {
         timer.lap(stats_.shade_ms);
     }
     if (!specular_) return;
-    specular_->follow(grid_, {blocks_, sampler_.packets(), sampler_.points(), hits_, normals_},
+    specular_->follow(grid_,
+                      {lattice_.packets(), sampler_.packets(), sampler_.points(), hits_, normals_},
                       colors_);
     timer.lap(stats_.shade_ms);
 }
 
 void LineFinder::make_room() {
-    hits_.resize(std::max(hits_.size(), blocks_.size()));
+    hits_.resize(std::max(hits_.size(), lattice_.size()));
     colors_.resize(hits_.size());
     // Strips are cut into so many blocks.
-    const std::size_t cut = kLanes / kBlockSide * (strips_down_.size() + strips_across_.size());
+    const std::size_t cut = kLanes / kBlockSide * lattice_.strips();
     normals_.resize(hits_.size() + cut);
     if (takes_shades_) places_.resize(normals_.size());
     if (fills_grid_) return;
@@ -83,67 +73,6 @@ void LineFinder::make_room() {
 bool LineFinder::lays_strips() const {
     return sampler_.rays_travel_alone() && !specular_ &&
            !edges_.pipeline.shader.compares_neighbours();
-}
-
-void LineFinder::lay_blocks() {
-    const auto in_blocks = [&](int points) {
-        return lays_strips() && points % kBlockSide == 1 ? points - 1 : points;
-    };
-    columns_in_blocks_ = in_blocks(grid_.width);
-    rows_in_blocks_ = in_blocks(grid_.height);
-    const auto blocks_for = [](int points) { return (points + kBlockSide - 1) / kBlockSide; };
-    blocks_across_ = blocks_for(columns_in_blocks_);
-    const int down = blocks_for(rows_in_blocks_);
-    block_at_.assign(static_cast<std::size_t>(blocks_across_) * static_cast<std::size_t>(down),
-                     kEmptyBlock);
-    blocks_.clear();
-    for (int row = 0; row < down; ++row) lay_row(row);
-    strips_down_.clear();
-    strips_across_.clear();
-    for (int j = 0; columns_in_blocks_ < grid_.width && j < grid_.height; j += kLanes) {
-        strips_down_.push_back(lay_block({grid_.x0 + columns_in_blocks_, grid_.y0 + j, 1,
-                                          std::min(kLanes, grid_.height - j), 1}));
-    }
-    for (int i = 0; rows_in_blocks_ < grid_.height && i < columns_in_blocks_; i += kLanes) {
-        strips_across_.push_back(lay_block({grid_.x0 + i, grid_.y0 + rows_in_blocks_,
-                                            std::min(kLanes, columns_in_blocks_ - i), 1, kLanes}));
-    }
-}
-
-/// Those of a row of blocks that may see anything.
-void LineFinder::lay_row(int row) {
-    const int y = grid_.y0 + row * kBlockSide;
-    // Most rows without anything are told by one question.
-    const ScreenBox first = screen_box({grid_.x0, y}, grid_.spacing);
-    const ScreenBox last = screen_box({grid_.x0 + columns_in_blocks_ - 1, y}, grid_.spacing);
-    if (!sampler_.reaches({first.left, first.top, last.right, first.bottom})) return;
-    // Of points that are shaded with an eye to their neighbours, all tiles must see the same ones.
-    const bool whole = edges_.pipeline.shader.compares_neighbours();
-    constexpr int kAtOnce = 64;
-    for (int k = 0; k < blocks_across_; k += kAtOnce) {
-        const ScreenBox box = screen_box({grid_.x0 + k * kBlockSide, y}, grid_.spacing);
-        std::uint64_t reached = sampler_.reached(box, kBlockSide * grid_.spacing,
-                                                 std::min(blocks_across_ - k, kAtOnce));
-        for (; reached != 0; reached &= reached - 1) {
-            const int column = k + std::countr_zero(reached);
-            block_at_[static_cast<std::size_t>(row * blocks_across_ + column)] =
-                static_cast<std::uint32_t>(blocks_.size());
-            // Field by field: to copy at once what was stored in pieces takes a wait.
-            Block& block = blocks_.emplace_back();
-            block.x = grid_.x0 + column * kBlockSide;
-            block.y = y;
-            block.columns = std::min(kBlockSide, columns_in_blocks_ - column * kBlockSide);
-            block.rows = std::min(kBlockSide, rows_in_blocks_ - row * kBlockSide);
-            block.whole = whole;
-        }
-    }
-}
-
-/// Its place among those that are traced.
-std::uint32_t LineFinder::lay_block(const Block& block) {
-    if (!sampler_.reaches(screen_box(block, grid_.spacing))) return kEmptyBlock;
-    blocks_.push_back(block);
-    return static_cast<std::uint32_t>(blocks_.size() - 1);
 }
 
 /// Whether nothing needs more of the lattice than where it hit, and one normal.
@@ -250,7 +179,7 @@ void LineFinder::fill_grid(std::size_t block) {
 /// Copies the values of a block to their places in a plane of the grid.
 template <class T>
 void LineFinder::copy_to_grid(std::size_t block, const T* from, T* plane) const {
-    const Block& place = blocks_[block];
+    const Block& place = lattice_[block];
     T* to = plane + grid_.index(place.x - grid_.x0, place.y - grid_.y0);
     if (place.columns == kBlockSide && place.rows == kBlockSide) {
         for (int j = 0; j < kBlockSide; ++j) {
@@ -283,29 +212,23 @@ SampleBlocks LineFinder::sample_blocks() {
     const auto blocks_for = [](int points) { return (points + kBlockSide - 1) / kBlockSide; };
     const int across = blocks_for(grid_.width);
     const int down = blocks_for(grid_.height);
-    cut_ = blocks_.size();
+    cut_ = lattice_.size();
     sample_block_at_.clear();
     for (int j = 0; j < down; ++j) {
         for (int i = 0; i < across; ++i) {
-            const bool on_right = i >= blocks_across_;
-            if (on_right || j * kBlockSide >= rows_in_blocks_) {
-                const auto& strips = on_right ? strips_down_ : strips_across_;
-                const int first = (on_right ? j : i) * kBlockSide;
-                const std::uint32_t strip = strips[static_cast<std::size_t>(first / kLanes)];
-                sample_block_at_.push_back(cut_strip(strip, first % kLanes, on_right));
-            } else {
-                sample_block_at_.push_back(block_index(i, j));
-            }
+            const auto [k, lane] = lattice_.place_of(i * kBlockSide, j * kBlockSide);
+            const bool cuts = k != LatticeBlocks::kEmpty && lattice_[k].is_strip();
+            sample_block_at_.push_back(cuts ? cut_strip(k, lane) : k);
         }
     }
-    static_assert(kEmptyBlock == SampleBlocks::kNothing);
+    static_assert(LatticeBlocks::kEmpty == SampleBlocks::kNothing);
     return {grid_.width, grid_.height,     across,         down,           sample_block_at_,
             ids_.data(), surfaces_.data(), places_.data(), normals_.data()};
 }
 
 /// Four samples of a strip, from the one in a lane on, as the first column or row of a block.
-std::uint32_t LineFinder::cut_strip(std::uint32_t strip, int first, bool down) {
-    if (strip == kEmptyBlock) return kEmptyBlock;
+std::uint32_t LineFinder::cut_strip(std::uint32_t strip, int first) {
+    const bool down = lattice_[strip].across == 1;
     const std::size_t to = cut_++;
     for (int n = 0; n < kBlockSide; ++n) {
         const int from = first + n;
@@ -330,8 +253,8 @@ void LineFinder::put_ends() {
 
 void LineFinder::put_end(int i, int j) {
     const std::size_t n = grid_.index(i, j);
-    const auto [k, lane] = place_of(i, j);
-    const GeometryId id = k == kEmptyBlock ? kBackground : ids_[k][lane];
+    const auto [k, lane] = lattice_.place_of(i, j);
+    const GeometryId id = k == LatticeBlocks::kEmpty ? kBackground : ids_[k][lane];
     grid_.id[n] = id;
     grid_.t[n] = id == kBackground ? 0.0F : hits_[k].t[lane];
 }
@@ -339,7 +262,7 @@ void LineFinder::put_end(int i, int j) {
 void LineFinder::keep_for_ridges(const Tile& tile) {
     const Timer timer(stats_.lines_ms);
     const Timer phase(stats_.ridges_ms);
-    ridges_->keep(tile, {blocks_, hits_, normals_, saw_anything_});
+    ridges_->keep(tile, {lattice_.packets(), hits_, normals_, saw_anything_});
 }
 
 void LineFinder::shade(std::size_t first, std::size_t count) {
@@ -361,7 +284,7 @@ void LineFinder::describe(std::size_t point, Sample& sample) const {
     const auto i = static_cast<int>(point % width);
     const auto j = static_cast<int>(point / width);
     if (!fills_grid_) {
-        const auto [k, lane] = place_of(i, j);
+        const auto [k, lane] = lattice_.place_of(i, j);
         sample.position = {places_[k].x[lane], places_[k].y[lane], places_[k].z[lane]};
         sample.normal = {normals_[k].x[lane], normals_[k].y[lane], normals_[k].z[lane]};
     }

@@ -1,6 +1,7 @@
 #include "render/line_search.h"
 
 #include "base/team.h"
+#include "base/timer.h"
 #include "render/line_mask.h"
 #include "render/mend_lines.h"
 
@@ -208,7 +209,7 @@ LineDensity LineSearch::take_ridges() {
         const Timer timer(ms);
         const LineMasks lines = masks_of(edges_, found_.tiles, ridges_->radius_px());
         ridges_->take(lines.touching, lines.near, [&](Segment& ridge) {
-            if (edges_.tempers_lines()) edges_.temper(ridge);
+            if (edges_.attenuates_lines()) edges_.attenuate(ridge);
             const InkStroke stroke = make_ink_stroke(ridge, edges_.style_of(ridge));
             density.add(stroke, edges_.ink.styles[stroke.style].width_px * stroke.width_scale);
             keep(edges_, ridge, found_);

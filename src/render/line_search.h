@@ -16,6 +16,7 @@
 #include "render/line_finder.h"
 #include "render/pipeline.h"
 #include "render/ridge_search.h"
+#include "render/work_loop.h"
 
 namespace ink {
 

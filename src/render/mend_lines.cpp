@@ -4,6 +4,7 @@
 #include <set>
 #include <utility>
 
+#include "base/timer.h"
 #include "lines/fold_joints.h"
 #include "lines/line_gaps.h"
 #include "lines/tones.h"

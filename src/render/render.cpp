@@ -1,24 +1,13 @@
 #include "render/render.h"
 
 #include <array>
+#include <optional>
 
-#include "base/error.h"
 #include "base/parallel.h"
+#include "base/timer.h"
 #include "render/pipeline.h"
 
 namespace ink {
-
-FilmSettings film_settings(const Settings& settings, const PixelFormats& formats) {
-    const bool linear = settings.line_blend == LineBlend::linear ||
-                        (settings.line_blend == LineBlend::automatic && !formats.display);
-    return {.compose = settings.compose,
-            .blend = linear ? BlendSpace::linear : BlendSpace::display,
-            .line_color = settings.line_color,
-            .background = settings.shading.background,
-            .transparent_background = settings.shading.transparent_background,
-            .display = formats.display,
-            .linear = formats.linear};
-}
 
 namespace {
 
@@ -54,10 +43,8 @@ Film render(const Scene& scene, const Tracer& tracer, const Settings& settings,
     RenderStats result;
     // From first to last, so that threads that come for one loop are there for the next.
     with_threads(settings.threads, [&] {
-        const Pipeline pipeline(
-            scene, tracer, settings, film,
-            LineOutput{.ink = formats.lines && settings.draws_lines(), .drawing = drawing}, true,
-            control.ambient, control.cancel);
+        const LineOutput lines{.ink = formats.lines && settings.draws_lines(), .drawing = drawing};
+        const Pipeline pipeline(scene, tracer, settings, film, lines, control);
         result = pipeline.locates() ? render_edges(pipeline, control)
                                     : render_stencils(pipeline, control);
     });
@@ -65,22 +52,6 @@ Film render(const Scene& scene, const Tracer& tracer, const Settings& settings,
     result.render_ms = render_ms;
     if (stats != nullptr) *stats = result;
     return film;
-}
-
-void WorkLoop::run(std::size_t count, const std::function<void(std::size_t, std::size_t)>& body) {
-    parallel_for(count, threads_,
-                 [&](std::size_t k, std::size_t worker) { item([&] { body(k, worker); }); });
-}
-
-void WorkLoop::item(const std::function<void()>& body) {
-    if (control_.cancel != nullptr && control_.cancel->load(std::memory_order_relaxed)) {
-        throw Cancelled();
-    }
-    body();
-    if (!control_.progress) return;
-    const std::scoped_lock lock(mutex_);
-    ++done_;
-    control_.progress(static_cast<double>(done_) / static_cast<double>(items_));
 }
 
 }  // namespace ink

@@ -6,6 +6,7 @@
 #include <variant>
 
 #include "base/multiversion.h"
+#include "base/timer.h"
 #include "lines/short_ridges.h"
 
 namespace ink {

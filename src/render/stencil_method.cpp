@@ -5,12 +5,14 @@
 #include <vector>
 
 #include "base/parallel.h"
+#include "base/timer.h"
 #include "lines/ridges.h"
 #include "lines/stencil_features.h"
 #include "lines/strength.h"
 #include "render/pipeline.h"
 #include "render/ridge_search.h"
 #include "render/tiles.h"
+#include "render/work_loop.h"
 #include "sampling/sampler.h"
 #include "sampling/stencil.h"
 

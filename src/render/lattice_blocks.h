@@ -1,0 +1,61 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "sampling/sampler.h"
+#include "sampling/samples.h"
+
+namespace ink {
+
+/// The packets in which the lattice points of a tile are traced: blocks of 4 x 4, and strips of
+/// sixteen where one column or row is left over. Those in whose part of the screen there is nothing
+/// are left out.
+class LatticeBlocks {
+  public:
+    static constexpr std::uint32_t kEmpty = 0xFFFFFFFFU;  ///< instead of a packet's index
+    struct Place {
+        std::uint32_t packet;  ///< or kEmpty
+        int lane;
+    };
+
+    /// Lays out the points of a grid, in the part of the screen that `sampler` has entered.
+    /// `strips`: whether strips may be laid. `whole`: see Block.
+    void lay(const SampleGrid& grid, const Sampler& sampler, bool strips, bool whole);
+
+    std::span<const Block> packets() const { return packets_; }
+    std::size_t size() const { return packets_.size(); }
+    const Block& operator[](std::size_t k) const { return packets_[k]; }
+    std::size_t strips() const { return down_.size() + across_.size(); }
+
+    /// Of a point of the grid.
+    Place place_of(int i, int j) const {
+        if (i < columns_ && j < rows_) {
+            return {block(i / kBlockSide, j / kBlockSide),
+                    j % kBlockSide * kBlockSide + i % kBlockSide};
+        }
+        const bool down = i >= columns_;
+        const int along = down ? j : i;
+        return {(down ? down_ : across_)[static_cast<std::size_t>(along / kLanes)], along % kLanes};
+    }
+    /// The packet of the block in a column and row of blocks, or kEmpty; those after it in its row
+    /// follow it in memory.
+    const std::uint32_t& block(int column, int row) const {
+        return block_at_[static_cast<std::size_t>(row) * static_cast<std::size_t>(blocks_across_) +
+                         static_cast<std::size_t>(column)];
+    }
+
+  private:
+    void lay_row(const SampleGrid& grid, const Sampler& sampler, int row, bool whole);
+    std::uint32_t lay_strip(const SampleGrid& grid, const Sampler& sampler, const Block& strip);
+
+    int columns_ = 0, rows_ = 0;  ///< of points in blocks; the rest are in strips
+    int blocks_across_ = 0;
+    std::vector<std::uint32_t> block_at_;       ///< row by row
+    std::vector<std::uint32_t> down_, across_;  ///< strips of the last column and row
+    std::vector<Block> packets_;
+};
+
+}  // namespace ink
