@@ -36,6 +36,22 @@ function(inktrace_layer name)
         target_link_libraries(${name} INTERFACE ${ARG_USES})
         target_include_directories(${name} INTERFACE ${PROJECT_SOURCE_DIR}/src)
     endif()
+    inktrace_layer_uses(${name} ${ARG_USES})
+endfunction()
+
+# inktrace_layer_uses(NAME layers...): notes all that is below a layer, for tests/layers_test.cmake.
+function(inktrace_layer_uses name)
+    set(below)
+    foreach(layer IN LISTS ARGN)
+        if(layer MATCHES "^ink_")
+            get_property(more GLOBAL PROPERTY INKTRACE_BELOW_${layer})
+            list(APPEND below ${layer} ${more})
+        endif()
+    endforeach()
+    list(REMOVE_DUPLICATES below)
+    set_property(GLOBAL PROPERTY INKTRACE_BELOW_${name} ${below})
+    list(JOIN below " " text)
+    set_property(GLOBAL APPEND PROPERTY INKTRACE_LAYERS "${name}: ${text}")
 endfunction()
 
 # inktrace_compile_fast(TARGET): for code that is compiled more often than it runs (tests, the
