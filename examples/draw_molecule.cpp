@@ -1,4 +1,6 @@
-// Draws a molecule with bold lines: draw_molecule acetaminophen.xyz picture.png
+// Draws a molecule with soft lines: draw_molecule acetaminophen.xyz picture.png
+//
+// Or as picture.exr, picture.svg, ...: the name tells what the file needs.
 
 #include <inktrace/inktrace.h>
 
@@ -12,13 +14,14 @@ int main(int argc, char** argv) try {
 
     inktrace::Scene scene;
     const inktrace::FileInfo info = scene.load(argv[1]);
-    std::cout << info.format << ", " << scene.primitive_count() << " spheres\n";
+    std::cout << info.format << ", " << scene.primitive_count() << " primitives\n";
 
     inktrace::Settings settings;
     settings.set("size", "640x480").set("line-width", "3px").set("metric", "power:10");
 
     const inktrace::Renderer renderer(std::move(scene));
-    const inktrace::Picture picture = renderer.render(settings);
+    const inktrace::RenderOptions options = inktrace::options_for_output(argv[2]);
+    const inktrace::Picture picture = renderer.render(settings, options);
     picture.save(argv[2]);
     std::cout << argv[2] << ": " << picture.stats().render_ms << " ms\n";
     return 0;

@@ -23,9 +23,9 @@ namespace inktrace {
 /// What a render took. Times are wall time in milliseconds; a phase's is the mean over threads.
 struct RenderStats {
     double render_ms = 0.0;  ///< from the built scene to the finished pixels
-    double trace_ms = 0.0;
-    double lines_ms = 0.0;
-    double shade_ms = 0.0;
+    double trace_ms = 0.0;   ///< rays through the pixels
+    double lines_ms = 0.0;   ///< finding lines and drawing them
+    double shade_ms = 0.0;   ///< colours of surfaces, and pixels
     double curves_ms = 0.0;  ///< after `render_ms`: joining lines and fitting curves to them
     std::uint64_t rays = 0;
     std::uint64_t crossings = 0;  ///< of lines with the lattice, located by method "edges"
@@ -50,10 +50,11 @@ class Picture {
     /// The lines as data; empty unless asked for with `RenderOptions::curves`.
     std::vector<Polyline> lines() const;
 
-    /// Writes .png, .jpg, .tiff, .exr (which needs `linear` pixels), .svg or .pdf (which need
-    /// `curves`), with the settings in the file's metadata. AOVs become channels of an EXR, or
-    /// pictures beside any other file ("x.depth.png"). Files appear whole or not at all. Throws
-    /// Error (input).
+    /// Writes .png, .jpg or .tiff (which need `display` pixels), .exr (`linear` pixels), .svg or
+    /// .pdf (`curves`, and `display` pixels for what lies below them), with the settings in the
+    /// file's metadata. AOVs become channels of an EXR, or pictures beside any other file
+    /// ("x.depth.png"). Files appear whole or not at all. Throws Error (input) where the file
+    /// cannot be written, Error (usage) where the picture lacks what the file needs.
     void save(const std::filesystem::path& file) const;
     /// Writes the lines as JSON (docs/formats.md); needs `curves`. Likewise.
     void save_lines(const std::filesystem::path& file) const;
@@ -102,14 +103,14 @@ struct RenderOptions {
     double draft = 1.0;
     /// Called with the share that is done, in (0, 1], and the size of the whole in megapixels, from
     /// the rendering threads, one at a time.
-    std::function<void(double share, double megapixels)> progress;
+    std::function<void(double share, double megapixels)> progress{};
     /// Once true, rendering stops within a tile's time and throws Error (cancelled). Must outlive
     /// the call; null: nothing stops it.
     const std::atomic<bool>* cancel = nullptr;
 };
 
-/// What `save` to this file needs. Throws Error (usage) for an extension that is not a picture's,
-/// Error (input) where the file cannot be written, before any time is spent.
+/// What `Picture::save` to this file needs. Throws Error (usage) for an extension that is not a
+/// picture's, Error (input) where the file cannot be written, before any time is spent.
 RenderOptions options_for_output(const std::filesystem::path& file);
 
 /// Throws Error (input) where a file cannot be written, before any time is spent.
@@ -135,7 +136,7 @@ struct Hit {
 /// at the same time.
 class Renderer {
   public:
-    /// Throws Error (input) where the scene is empty or does not fit into memory.
+    /// Takes the scene over. Throws Error (input) where it is empty or does not fit into memory.
     explicit Renderer(Scene scene);
     Renderer(Renderer&&) noexcept;
     Renderer& operator=(Renderer&&) noexcept;

@@ -21,8 +21,7 @@ struct ValueForm {
     };
     Kind kind = Kind::text;
     std::vector<std::string> words{};
-    double least = 0.0;
-    double most = 0.0;  ///< what is usual: more may be allowed
+    double least = 0.0, most = 0.0;  ///< what is usual: more may be allowed
 };
 
 /// One setting, as help and user interfaces show it.

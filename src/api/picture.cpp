@@ -77,9 +77,17 @@ const ink::LineArt& line_art(const Picture::Impl& picture, const std::filesystem
         "{}: the lines were not kept as curves; set RenderOptions::curves", file.string()));
 }
 
+/// Throws where 8-bit pixels were not asked for.
+void need_display(const Picture::Impl& picture, const std::filesystem::path& file) {
+    if (!picture.film.display().pixels.empty()) return;
+    throw ink::UsageError(
+        fmt::format("{}: no 8-bit pixels were made; set RenderOptions::display", file.string()));
+}
+
 void save_curves(const Picture::Impl& picture, const std::filesystem::path& file,
                  CurveFormat format) {
     const ink::LineArt& art = line_art(picture, file);
+    if (art.image || !art.regions.empty()) need_display(picture, file);
     if (format == CurveFormat::svg) ink::write_svg(file, art);
     if (format == CurveFormat::pdf) ink::write_pdf(file, art);
 }
@@ -87,6 +95,7 @@ void save_curves(const Picture::Impl& picture, const std::filesystem::path& file
 void save_pixels(const Picture::Impl& picture, const std::filesystem::path& file) {
     const ink::ImageFormat format = picture_format(file);
     if (format != ink::ImageFormat::exr) {
+        need_display(picture, file);
         ink::write_image(file, format, picture.film.display(), picture.dpi, picture.metadata);
         return;
     }
