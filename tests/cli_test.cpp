@@ -374,8 +374,8 @@ bool has_unfinished_file(const fs::path& folder) {
 }
 
 TEST_P(EverySignal, LeavesNoHalfFileOfOneThatIsBeingWritten) {
-    Program program(folder_.path(), {"render", kSample, "-o", "a.png", "--size", "5000x5000",
-                                     "--compose", "shaded", "--quiet"});
+    Program program(folder_.path(), {"render", kSample, "-o", "a.png", "--size", "2500x2500",
+                                     "--compose", "shaded", "--look", "plain", "--quiet"});
     while (program.is_running() && !has_unfinished_file(folder_.path())) {
         std::this_thread::sleep_for(std::chrono::microseconds(200));
     }

@@ -26,15 +26,17 @@ World three_regions(Vec3d at, double turn_deg, double first_height) {
              flat(3, 0.0, sector(240, 360))}};
 }
 
+constexpr int kNear = 16;  ///< side of the tile about a junction, pixels
+
 void expect_no_gap_at(const World& world, Vec3d at, const std::string& what) {
     for (int q = 1; q <= 4; ++q) {
-        const Found found = search(world, q);
+        const Found found = search(world, q, kNear);
         const auto loose = loose_ends(found);
         EXPECT_TRUE(loose.empty()) << what << ", q " << q << ": " << list(loose);
-        const std::vector<double> ink = draw(found.segments, 3.0);
+        const std::vector<double> ink = draw(found.segments, 3.0, kNear);
         const auto x = static_cast<std::size_t>(at.x);
         const auto y = static_cast<std::size_t>(at.y);
-        EXPECT_NEAR(ink[y * kSide + x], 1.0, 1e-5) << what << ", q " << q;
+        EXPECT_NEAR(ink[y * kNear + x], 1.0, 1e-5) << what << ", q " << q;
     }
 }
 
@@ -43,8 +45,8 @@ std::vector<std::pair<Vec3d, double>> junction_places() {
     std::vector<std::pair<Vec3d, double>> places;
     for (int k = 0; k < 60; ++k) {
         const auto uniform = [&] { return static_cast<double>(random() >> 8U) * 0x1p-24; };
-        const double x = 24 + uniform();
-        const double y = 24 + uniform();
+        const double x = kNear / 2 + uniform();
+        const double y = kNear / 2 + uniform();
         places.push_back({{x, y, 0}, 360 * uniform()});
     }
     return places;

@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <map>
 #include <numbers>
 #include <optional>
 #include <set>
 #include <span>
 #include <sstream>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "lines/connect.h"
@@ -272,12 +274,26 @@ inline bool at_border(const SampleGrid& grid, Vec2f p) {
 
 /// Ends inside the grid that no other segment touches.
 inline std::vector<Vec2f> loose_ends(const Found& found) {
+    constexpr double kTouching = 1e-4;
+    const auto cell = [](double v) { return static_cast<int>(std::floor(v)); };
+    // By pixel, the segments that come near it.
+    std::map<std::pair<int, int>, std::vector<const Segment*>> near;
+    for (const Segment& s : found.segments) {
+        const auto [left, right] = std::minmax(s.a.x, s.b.x);
+        const auto [top, bottom] = std::minmax(s.a.y, s.b.y);
+        for (int y = cell(top - kTouching); y <= cell(bottom + kTouching); ++y) {
+            for (int x = cell(left - kTouching); x <= cell(right + kTouching); ++x) {
+                near[{x, y}].push_back(&s);
+            }
+        }
+    }
     std::vector<Vec2f> loose;
     for (const Segment& segment : found.segments) {
         for (const Vec2f end : {segment.a, segment.b}) {
             if (at_border(found.grid, end)) continue;
-            const bool touched = std::ranges::any_of(found.segments, [&](const Segment& other) {
-                return &other != &segment && distance_to(other, end) < 1e-4;
+            const auto& others = near.at({cell(end.x), cell(end.y)});
+            const bool touched = std::ranges::any_of(others, [&](const Segment* other) {
+                return other != &segment && distance_to(*other, end) < kTouching;
             });
             if (!touched) loose.push_back(end);
         }
