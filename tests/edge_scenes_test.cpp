@@ -198,7 +198,7 @@ Object backdrop(float z) {
     return mesh_object({{-3, -3, z}, {3, -3, z}, {3, 3, z}, {-3, 3, z}}, {{0, 1, 2}, {0, 2, 3}});
 }
 
-/// A turned globe seen along z, with a plate behind its limb.
+/// A turned globe seen along z, with a plate behind its contour.
 Settings globe_view() {
     Settings settings = plan_view({240, 240}, 2.0);
     settings.view.eye = Vec3d{0, 0, 10};
@@ -209,7 +209,7 @@ Settings globe_view() {
 
 constexpr double kPixel = 2.4 / 240;  // in globe_view
 
-TEST(LimbOfAGlobe, HasNoIntersectionWithAPlateBehindIt) {
+TEST(ContourOfAGlobe, HasNoIntersectionWithAPlateBehindIt) {
     double wrong = 0.0;
     double all = 0.0;
     for (const std::uint32_t n : {20U, 48U, 120U}) {
@@ -226,8 +226,8 @@ TEST(LimbOfAGlobe, HasNoIntersectionWithAPlateBehindIt) {
 }
 
 // It is as steep as a hundred there: what is within a thousandth of a pixel of a facet's edge may
-// pass for a limb.
-TEST(LimbOfAGlobe, SunkIntoAPlateIsAnIntersection) {
+// pass for a contour.
+TEST(ContourOfAGlobe, SunkIntoAPlateIsAnIntersection) {
     for (const std::uint32_t n : {20U, 48U, 120U}) {
         for (const double depth : {1.0, 3.0, 10.0, 40.0}) {
             const Scene scene({globe(n), backdrop(static_cast<float>(depth * kPixel))});

@@ -157,7 +157,7 @@ TEST(MeshLines, LookTheSameFromEdgesAndFromCrossings) {
             const Film edges = render(scene, *tracer, settings);
             const auto& ink = plane(edges, "line.A");
             EXPECT_LT(mean_difference(ink, expected), 0.005);
-            // Beside a limb, a line between faces may end a pixel earlier or later.
+            // Beside a contour, a line between faces may end a pixel earlier or later.
             std::size_t far = 0;
             for (std::size_t k = 0; k < ink.size(); ++k) {
                 far += std::abs(ink[k] - expected[k]) > 0.25F ? 1 : 0;

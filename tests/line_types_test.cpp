@@ -14,7 +14,7 @@ namespace {
 
 // Types
 
-TEST(SphereSeam, IsAnIntersectionAndALimbASilhouette) {
+TEST(SphereSeam, IsAnIntersectionAndAContourASilhouette) {
     for (const TwoSpheres& spheres : overlapping_spheres()) {
         const int side = static_cast<int>(4 * spheres.r) + 6;
         for (const int q : {1, 2, 4}) {
@@ -25,18 +25,19 @@ TEST(SphereSeam, IsAnIntersectionAndALimbASilhouette) {
                     continue;
                 }
                 const double seam = std::abs(spheres.to_seam(segment.a));
-                const double limb = spheres.to_limb(segment.a);
-                if (seam < 0.2 && limb < 0.2) continue;  // where one turns into the other
-                EXPECT_EQ(segment.type, seam < limb ? LineType::intersection : LineType::silhouette)
-                    << segment.a.x << ", " << segment.a.y << ": seam " << seam << " limb " << limb
-                    << ", r " << spheres.r << ", s " << spheres.s << ", d.z " << spheres.d.z
-                    << ", q " << q;
+                const double contour = spheres.to_contour(segment.a);
+                if (seam < 0.2 && contour < 0.2) continue;  // where one turns into the other
+                EXPECT_EQ(segment.type,
+                          seam < contour ? LineType::intersection : LineType::silhouette)
+                    << segment.a.x << ", " << segment.a.y << ": seam " << seam << " contour "
+                    << contour << ", r " << spheres.r << ", s " << spheres.s << ", d.z "
+                    << spheres.d.z << ", q " << q;
             }
         }
     }
 }
 
-TEST(SphereSeam, SeenFromTheSideIsAnIntersectionFromLimbToLimb) {
+TEST(SphereSeam, SeenFromTheSideIsAnIntersectionFromContourToContour) {
     for (const double r : {5.0, 10.0, 20.0}) {
         for (const double overlap : {0.02, 0.1, 0.5, 1.0}) {
             for (int angle_deg = 0; angle_deg < 90; angle_deg += 11) {
@@ -69,8 +70,8 @@ TEST(GapOfOnePercentBetweenSpheres, IsASilhouette) {
         for (const double ratio : {0.5, 1.0, 2.0, 4.0}) {
             for (const double lean_deg : {20.0, 40.0, 60.0, 70.0, 80.0, 85.0}) {
                 for (const double turn_deg : {0.0, 33.0}) {
-                    // The front sphere's limb, where it is nearest to the sphere behind, is in the
-                    // middle of the tile.
+                    // The front sphere's contour, where it is nearest to the sphere behind, is in
+                    // the middle of the tile.
                     const Vec3d aside{std::cos(turn_deg * kDegrees), std::sin(turn_deg * kDegrees),
                                       0};
                     const Vec3d c = Vec3d{24.137, 23.711, 0} - aside * r;
@@ -94,7 +95,7 @@ TEST(GapOfOnePercentBetweenSpheres, IsASilhouette) {
     }
 }
 
-TEST(LimbInFrontOfAPlate, IsASilhouetteAtAnyGapThatCanBeSeen) {
+TEST(ContourInFrontOfAPlate, IsASilhouetteAtAnyGapThatCanBeSeen) {
     for (const double r : {20.0, 50.0, 120.0, 250.0, 500.0}) {
         for (const double gap : {0.02, 0.05, 0.1, 0.3}) {
             for (const int q : {1, 4}) {
@@ -109,7 +110,7 @@ TEST(LimbInFrontOfAPlate, IsASilhouetteAtAnyGapThatCanBeSeen) {
                     wrong += count(found, LineType::intersection);
                     all += found.segments.size();
                 }
-                // A gap of less than a pixel behind a limb can still pass for contact.
+                // A gap of less than a pixel behind a contour can still pass for contact.
                 EXPECT_LE(wrong, gap * r < 2.5 ? all / 100 : 0U)
                     << "of " << all << " segments: radius " << r << " px, gap " << gap
                     << " of it, q " << q;
@@ -120,7 +121,7 @@ TEST(LimbInFrontOfAPlate, IsASilhouetteAtAnyGapThatCanBeSeen) {
 
 TEST(SphereSunkIntoAPlate, MeetsItInAnIntersection) {
     for (const double r : {10.0, 20.0, 120.0, 500.0}) {
-        // Nearer to the equator the plate touches the limb, and both types are right.
+        // Nearer to the equator the plate touches the contour, and both types are right.
         for (const double above_equator : {0.05, 0.2, 0.5, 0.9}) {
             for (int angle_deg = 0; angle_deg < 360; angle_deg += 40) {
                 const double ring = r * std::sqrt(1.0 - above_equator * above_equator);
@@ -140,7 +141,7 @@ TEST(SmoothSurface, HasNoLineButItsOutline) {
     for (const double r : {1.0, 1.5, 2.0, 3.0, 5.0, 10.0, 24.0, 100.0, 1000.0, 10000.0}) {
         for (const int q : {1, 2, 4}) {
             for (int angle_deg = 0; angle_deg < 360; angle_deg += 40) {
-                // The limb is in the middle of the tile, or the whole sphere in the tile.
+                // The contour is in the middle of the tile, or the whole sphere in the tile.
                 const double back = r > 20.0 ? r : 0.0;
                 const Vec3d c{24.137 - back * std::cos(angle_deg * kDegrees),
                               23.711 - back * std::sin(angle_deg * kDegrees), 0};

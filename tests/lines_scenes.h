@@ -25,7 +25,7 @@ struct TwoSpheres {
         const double f = dot(v, v) - r * r;
         return f / std::hypot(2 * v.x - 2 * v.z * a.x / a.z, 2 * v.y - 2 * v.z * a.y / a.z);
     }
-    double to_limb(Vec2f p) const {
+    double to_contour(Vec2f p) const {
         return std::min(std::abs(std::hypot(p.x - c.x, p.y - c.y) - r),
                         std::abs(std::hypot(p.x - d.x, p.y - d.y) - s));
     }

@@ -154,7 +154,7 @@ TEST(SphereSeam, LiesWhereTheSpheresMeet) {
             for (const Segment& segment : found.segments) {
                 if (!between(segment, 1, 2)) continue;
                 const auto off = [&](Vec2f p) {
-                    return std::min(std::abs(spheres.to_seam(p)), spheres.to_limb(p));
+                    return std::min(std::abs(spheres.to_seam(p)), spheres.to_contour(p));
                 };
                 EXPECT_LT(off(segment.a), 0.05);
                 (segment.spans_cell ? worst_end : worst_junction) =

@@ -170,8 +170,8 @@ class Seen {
     mutable std::vector<SurfaceKey> expected_;
 };
 
-bool is_limb(const MeshCrossing& crossing) {
-    return crossing.kind == Kind::first_limb || crossing.kind == Kind::second_limb;
+bool is_contour(const MeshCrossing& crossing) {
+    return crossing.kind == Kind::first_contour || crossing.kind == Kind::second_contour;
 }
 
 ViewSettings view_from(Vec3d eye, bool parallel) {
@@ -191,7 +191,7 @@ TEST(MeshWalk, FindsTheOutlineOfARoundMeshWhereRaysBeginToMiss) {
             if (hit_a == (at_b.t < kInfinity)) return;
             ++outlines;
             const MeshCrossing crossing = seen.cross(a, at_a.key, b, at_b.key);
-            ASSERT_EQ(crossing.kind, hit_a ? Kind::first_limb : Kind::second_limb);
+            ASSERT_EQ(crossing.kind, hit_a ? Kind::first_contour : Kind::second_contour);
             EXPECT_FALSE(crossing.at_rim);
             EXPECT_TRUE(std::isinf(crossing.gap));
             EXPECT_TRUE(seen.confirmed(crossing));
@@ -258,7 +258,7 @@ TEST(MeshWalk, EndsAtTheRimOfAnOpenSheet) {
     seen.for_each_pair([&](Vec2f a, Sight at_a, Vec2f b, Sight at_b) {
         if ((at_a.t < kInfinity) == (at_b.t < kInfinity)) return;
         const MeshCrossing crossing = seen.cross(a, at_a.key, b, at_b.key);
-        ASSERT_TRUE(is_limb(crossing));
+        ASSERT_TRUE(is_contour(crossing));
         EXPECT_TRUE(crossing.at_rim);
         const Vec3d p = seen.world(a + (b - a) * static_cast<float>(crossing.at), crossing.t);
         EXPECT_NEAR(std::max(std::abs(p.x), std::abs(p.y)), 1.0, 1e-4);
@@ -287,10 +287,10 @@ TEST(MeshWalk, KnowsNothingOfAMeshWhoseEdgesAreNotPaired) {
     EXPECT_TRUE(seen.walk().knows(1));
 }
 
-/// Counts limbs that stand well before what is behind them, and how many of these a pair of rays
+/// Counts contours that stand well before what is behind them, and how many of these a pair of rays
 /// denies.
 struct Tally {
-    int limbs = 0, wrong = 0, unknown = 0, pairs = 0;
+    int contours = 0, wrong = 0, unknown = 0, pairs = 0;
 };
 
 Tally tally(const Seen& seen) {
@@ -301,12 +301,12 @@ Tally tally(const Seen& seen) {
         const MeshCrossing crossing = seen.cross(a, at_a.key, b, at_b.key);
         tally.unknown += crossing.kind == Kind::unknown;
         constexpr float kDeep = 0.05F;
-        if (!is_limb(crossing) || crossing.gap < kDeep || !seen.confirmed(crossing)) return;
+        if (!is_contour(crossing) || crossing.gap < kDeep || !seen.confirmed(crossing)) return;
         constexpr float kBeside = 0.004F;
         const auto at = static_cast<float>(crossing.at);
         if (at < kBeside || at > 1.0F - kBeside) return;
-        ++tally.limbs;
-        const bool first = crossing.kind == Kind::first_limb;
+        ++tally.contours;
+        const bool first = crossing.kind == Kind::first_contour;
         const float front = seen.at(a + (b - a) * (at + (first ? -kBeside : kBeside))).t;
         const float behind = seen.at(a + (b - a) * (at + (first ? kBeside : -kBeside))).t;
         // Farther beside it the check may miss something narrow.
@@ -328,8 +328,8 @@ TEST(MeshWalk, AgreesWithRaysOnMeshesWithManyFolds) {
         const auto radius = [&] { return 0.75F + 0.35F * uniform(random); };
         const Seen seen({globe(14, radius)}, view_from({1.3, 2.1, 4.7}, seed % 2 == 0));
         const Tally found = tally(seen);
-        EXPECT_GT(found.limbs, 300);
-        EXPECT_LT(found.wrong, 0.01 * found.limbs) << found.wrong << " of " << found.limbs;
+        EXPECT_GT(found.contours, 300);
+        EXPECT_LT(found.wrong, 0.01 * found.contours) << found.wrong << " of " << found.contours;
         EXPECT_LT(found.unknown, 0.15 * found.pairs) << found.unknown << " of " << found.pairs;
     }
 }
@@ -346,13 +346,13 @@ TEST(MeshWalk, FindsOfManyPairsTogetherWhatItFindsOfEach) {
     std::ranges::shuffle(pairs, random);  // so that walks on either mesh take turns
     std::vector<SurfaceKey> expected;
     const std::vector<MeshCrossing> together = seen.cross(pairs, expected);
-    int limbs = 0;
+    int contours = 0;
     for (std::size_t k = 0; k < pairs.size(); ++k) {
         const auto& [from, to, first, second, checks] = pairs[k];
         const MeshCrossing alone = seen.cross(from, first, to, second);
         const MeshCrossing& found = together[k];
         ASSERT_EQ(found.kind, alone.kind);
-        limbs += is_limb(found);
+        contours += is_contour(found);
         EXPECT_EQ(found.at, alone.at);
         EXPECT_EQ(found.t, alone.t);
         EXPECT_EQ(found.gap, alone.gap);
@@ -363,7 +363,7 @@ TEST(MeshWalk, FindsOfManyPairsTogetherWhatItFindsOfEach) {
                                seen.expected().begin() + alone.first_expected + alone.expected,
                                expected.begin() + found.first_expected));
     }
-    EXPECT_GT(limbs, 300);
+    EXPECT_GT(contours, 300);
 }
 
 TEST(MeshWalk, AgreesWithRaysOnOpenBranchingAndCrossedMeshes) {
@@ -394,8 +394,8 @@ TEST(MeshWalk, AgreesWithRaysOnOpenBranchingAndCrossedMeshes) {
         smooth_normals(mesh);
         const Seen seen({object}, view_from({1.3, 2.1, 4.7}, seed % 2 == 0));
         const Tally found = tally(seen);
-        EXPECT_GT(found.limbs, 200);
-        EXPECT_LT(found.wrong, 0.02 * found.limbs) << found.wrong << " of " << found.limbs;
+        EXPECT_GT(found.contours, 200);
+        EXPECT_LT(found.wrong, 0.02 * found.contours) << found.wrong << " of " << found.contours;
     }
 }
 

@@ -48,9 +48,9 @@ TEST(PredictedSeam, LiesWhereTheSpheresMeet) {
     EXPECT_GT(seams, 15U);
 }
 
-TEST(PredictedLimb, IsASilhouetteHoweverLittleItStandsOut) {
+TEST(PredictedContour, IsASilhouetteHoweverLittleItStandsOut) {
     for (const double gap : {3.0, 1.0, 0.3, 0.1, 0.03, 0.01}) {
-        // The limb of the first sphere, at depth 0, is `gap` in front of the second's face.
+        // The contour of the first sphere, at depth 0, is `gap` in front of the second's face.
         const World world{
             {sphere(1, {24, 24, 0}, 12), sphere(2, {24, 24, -400 - gap}, std::hypot(400.0, 12.0))},
             1.0 / 512,
@@ -177,7 +177,7 @@ TEST(PredictedLanes, SayWhatIsPredictedOfOneEdgeAtATime) {
                         1e-5F * one->squared_radius);
         }
     }
-    // Limbs on both sides, seams, and few that must be searched.
+    // Contours on both sides, seams, and few that must be searched.
     EXPECT_GT(seen[2], 500);
     EXPECT_GT(seen[3], 500);
     EXPECT_GT(seen[4], 200);

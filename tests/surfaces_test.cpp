@@ -165,7 +165,7 @@ TEST_P(TrianglePairs, AreSmoothTogetherWhereTheyAreOneByOne) {
         EXPECT_EQ(mesh().twins[edges[k]] / 3, pairs[k].second);
     }
     EXPECT_GT(smooth, 500);
-    EXPECT_LT(smooth, static_cast<int>(pairs.size()) - 550) << "creases and limbs are none";
+    EXPECT_LT(smooth, static_cast<int>(pairs.size()) - 550) << "creases and contours are none";
 }
 
 TEST_P(TrianglePairs, OfDifferentObjectsOrOfUnknownNumbersAreNotKnownToBeSmooth) {

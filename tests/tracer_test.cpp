@@ -83,7 +83,7 @@ void expect_hits_of_brute_force(const Scene& scene, PacketWidth width, int most)
     EXPECT_GT(result.hits, result.rays / 4);
     EXPECT_LE(result.different, most) << "of " << result.rays;
     EXPECT_LT(result.t_error, 2e-5F);
-    EXPECT_LT(result.normal_error, 2e-2F);  // at a limb the normal turns by sqrt(2 eps)
+    EXPECT_LT(result.normal_error, 2e-2F);  // at a contour the normal turns by sqrt(2 eps)
 }
 
 TEST_P(EveryTracerPath, HitsWhatBruteForceHits) {

@@ -10,8 +10,8 @@ namespace ink {
 
 namespace {
 
-constexpr auto kFirstLimb = static_cast<std::int32_t>(Prediction::Kind::first_limb);
-constexpr auto kSecondLimb = static_cast<std::int32_t>(Prediction::Kind::second_limb);
+constexpr auto kFirstContour = static_cast<std::int32_t>(Prediction::Kind::first_contour);
+constexpr auto kSecondContour = static_cast<std::int32_t>(Prediction::Kind::second_contour);
 constexpr auto kSeam = static_cast<std::int32_t>(Prediction::Kind::seam);
 constexpr auto kGap = static_cast<std::int32_t>(Prediction::Kind::gap);
 
@@ -43,10 +43,10 @@ void find_checks(float offset, float least_squared, const EdgeLanes& edges,
         const float before = at - offset;
         const float after = at + offset;
         const bool known =
-            (kind == kFirstLimb && after >= 1.0F) || (kind == kSecondLimb && at <= offset);
+            (kind == kFirstContour && after >= 1.0F) || (kind == kSecondContour && at <= offset);
         const bool large = predictions.squared_radius[i] >= least_squared;
         checks.wanted[i] = kind >= 0 && !known && large ? 1 : 0;
-        const float place = kind == kFirstLimb ? after : kind == kSecondLimb ? before : at;
+        const float place = kind == kFirstContour ? after : kind == kSecondContour ? before : at;
         checks.x[i] = edges.ax[i] + (edges.bx[i] - edges.ax[i]) * place;
         checks.y[i] = edges.ay[i] + (edges.by[i] - edges.ay[i]) * place;
     }
@@ -72,11 +72,11 @@ void find_crossings(const EdgeLanes& edges, const PredictionLanes& predictions,
         crossings.x[i] = edges.ax[i] + (edges.bx[i] - edges.ax[i]) * at;
         crossings.y[i] = edges.ay[i] + (edges.by[i] - edges.ay[i]) * at;
         const bool nearer = edges.first.t[i] <= edges.second.t[i];
-        const bool in_front = kind == kFirstLimb || (kind != kSecondLimb && nearer);
+        const bool in_front = kind == kFirstContour || (kind != kSecondContour && nearer);
         crossings.first_in_front[i] = in_front ? 1 : 0;
         crossings.nearer[i] = in_front ? first[i] : second[i];
-        const std::int32_t limb = first[i] == second[i] ? kSelfOcclusion : kSilhouette;
-        crossings.type[i] = kind == kSeam ? kIntersection : limb;
+        const std::int32_t contour = first[i] == second[i] ? kSelfOcclusion : kSilhouette;
+        crossings.type[i] = kind == kSeam ? kIntersection : contour;
     }
 }
 
@@ -211,12 +211,12 @@ std::size_t BallLocator::confirm(std::size_t number, std::size_t checked) {
         const auto lane = static_cast<int>(checked_[checked] % kLanes);
         std::int32_t& kind = batch.predictions.kind[lane];
         const SurfaceKey seen = seen_[checked];
-        // Of limbs only one surface will do. No branch: which one cannot be guessed.
+        // Of contours only one surface will do. No branch: which one cannot be guessed.
         const auto is = [&](const EdgeEnds& ends, std::int32_t unless) {
             return (ends.object[lane] ^ seen.object) | (ends.primitive[lane] ^ seen.primitive) |
                    static_cast<std::uint32_t>(kind == unless);
         };
-        if (is(batch.first, kFirstLimb) != 0 && is(batch.second, kSecondLimb) != 0) {
+        if (is(batch.first, kFirstContour) != 0 && is(batch.second, kSecondContour) != 0) {
             kind = PredictionLanes::kNone;
         }
     }

@@ -1,4 +1,4 @@
-// What lies between the two ends of a located interval: contact, a limb, a rim or a crease.
+// What lies between the two ends of a located interval: contact, a contour, a rim or a crease.
 
 #include <algorithm>
 #include <cmath>
@@ -55,7 +55,7 @@ float Locator::across(const Interval& interval) const {
 
 /// Whether two surfaces touch at the crossing between them.
 bool Locator::surfaces_meet(const Interval& interval) const {
-    return planes_meet(interval) && !has_limb(interval) && !ends_before(interval);
+    return planes_meet(interval) && !has_contour(interval) && !ends_before(interval);
 }
 
 /// How far the plane of b's surface lies behind that of a's, at either end.
@@ -91,7 +91,7 @@ bool Locator::may_meet(const Interval& interval) const {
 }
 
 /// Whether the nearer surface's triangle ends on the way before its plane meets the other one's: at
-/// a limb of a mesh it ends at an edge, beyond which the surface turns away.
+/// a contour of a mesh it ends at an edge, beyond which the surface turns away.
 bool Locator::ends_before(const Interval& interval) const {
     // Within one mesh, two triangles meet just where they end.
     if (!way_out_ || interval.at_a.id == interval.at_b.id || gap(interval) <= kPositionRounding ||
@@ -119,7 +119,7 @@ bool Locator::leaps(const Interval& interval) const {
 
 /// Whether the nearer surface turns away within the interval, going by how its normal turned over
 /// the last step. A facet does not turn, whatever the normals between its corners do.
-bool Locator::has_limb(const Interval& interval) const {
+bool Locator::has_contour(const Interval& interval) const {
     const bool a_in_front = interval.at_a.t <= interval.at_b.t;
     const Sample& front = a_in_front ? interval.at_a : interval.at_b;
     const float before = a_in_front ? interval.before_a : interval.before_b;
@@ -132,7 +132,7 @@ bool Locator::has_limb(const Interval& interval) const {
     const Vec2f across = interval.b - interval.a;
     const float stepped = std::sqrt(dot(step, step));
     const float width = std::sqrt(dot(across, across));
-    return now * stepped <= settings_.limb_slack * width * (before - now);
+    return now * stepped <= settings_.contour_slack * width * (before - now);
 }
 
 bool Locator::classify(const Interval& interval, Crossing& crossing) const {

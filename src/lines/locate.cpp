@@ -165,9 +165,9 @@ void Locator::check(std::size_t k, Vec2f point, const Sample& sample) {
     const Prediction::Kind kind = interval.prediction->kind;
     const bool as_first = same_surface(sample, interval.at_a);
     const bool as_second = same_surface(sample, interval.at_b);
-    const bool confirmed = kind == Prediction::Kind::first_limb    ? as_second
-                           : kind == Prediction::Kind::second_limb ? as_first
-                                                                   : as_first || as_second;
+    const bool confirmed = kind == Prediction::Kind::first_contour    ? as_second
+                           : kind == Prediction::Kind::second_contour ? as_first
+                                                                      : as_first || as_second;
     if (confirmed && kind != Prediction::Kind::gap) {
         interval.state = State::foreseen;
         return;
@@ -342,8 +342,8 @@ bool Locator::lies_in_slit(const Interval& interval, const Sample& beyond,
            apart(interval.at_b);
 }
 
-/// A front surface that turns away at its limb is so steep there that a small gap behind it could
-/// pass for contact.
+/// A front surface that turns away at its contour is so steep there that a small gap behind it
+/// could pass for contact.
 void Locator::refine_steep(const SampleFunction& sample) {
     active_.clear();
     for (std::size_t k = 0; k < intervals_.size(); ++k) {

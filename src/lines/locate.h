@@ -32,12 +32,12 @@ struct LocateSettings {
     int steep_steps = 5;
     /// A surface turns away at a crossing if its slope, going on as it did, becomes infinite within
     /// so many lengths of the last interval.
-    float limb_slack = 1.5F;
+    float contour_slack = 1.5F;
     /// Within one geometry, and only if the depth differs by this many times what one surface that
     /// curves from one normal to the other can do.
     float leap = 1.5F;
     /// Each step must leave this share of a jump or a turn, or it is none: on a smooth surface a
-    /// step halves it at least. The jump at a limb shrinks too, as the front surface's normal
+    /// step halves it at least. The jump at a contour shrinks too, as the front surface's normal
     /// tilts, but only by the root of 1/2.
     float surviving_share = 0.6F;
     /// No step need leave less than this of a turn: the rest is the curve of the sides.
@@ -85,23 +85,23 @@ struct PredictedSide {
 inline bool needs_check(const LocateSettings& settings, const Prediction& p) {
     using Kind = Prediction::Kind;
     // The check would repeat what the edge's end has seen.
-    const bool known = (p.kind == Kind::first_limb && p.at + settings.check_offset >= 1.0F) ||
-                       (p.kind == Kind::second_limb && p.at <= settings.check_offset);
+    const bool known = (p.kind == Kind::first_contour && p.at + settings.check_offset >= 1.0F) ||
+                       (p.kind == Kind::second_contour && p.at <= settings.check_offset);
     return !known && p.squared_radius >= settings.least_checked * settings.least_checked;
 }
 inline float checked_place(const LocateSettings& settings, const Prediction& p) {
-    if (p.kind == Prediction::Kind::first_limb) return p.at + settings.check_offset;
-    if (p.kind == Prediction::Kind::second_limb) return p.at - settings.check_offset;
+    if (p.kind == Prediction::Kind::first_contour) return p.at + settings.check_offset;
+    if (p.kind == Prediction::Kind::second_contour) return p.at - settings.check_offset;
     return p.at;
 }
 
-/// What a prediction says needs no measuring: a limb hides, a seam joins.
+/// What a prediction says needs no measuring: a contour hides, a seam joins.
 inline bool cross_as_predicted(const Viewpoint& viewpoint, const LocateSettings& settings,
                                const Prediction& p, Vec2f a, Vec2f b, const PredictedSide& first,
                                const PredictedSide& second, Crossing& crossing) {
     using Kind = Prediction::Kind;
     const bool first_in_front =
-        p.kind == Kind::first_limb || (p.kind != Kind::second_limb && first.t <= second.t);
+        p.kind == Kind::first_contour || (p.kind != Kind::second_contour && first.t <= second.t);
     crossing.point = a + (b - a) * p.at;
     crossing.first = first.id;
     crossing.second = second.id;
@@ -163,7 +163,7 @@ class Locator {
         std::uint32_t edge = 0;
         float first_jump = 0.0F, first_gap = 0.0F, first_turn = 0.0F;  ///< between the edge's ends
         /// The square of the cosine between normal and ray, and where, at the ends before these:
-        /// it falls to zero along a straight line towards a limb. Negative: not known.
+        /// it falls to zero along a straight line towards a contour. Negative: not known.
         float before_a = -1.0F, before_b = -1.0F;
         Vec2f point_before_a{}, point_before_b{};
         int steps = 0;  ///< of bisection so far
@@ -198,7 +198,7 @@ class Locator {
     Depths depths_between(const Interval& interval) const;
     float across(const Interval& interval) const;
     bool leaps(const Interval& interval) const;
-    bool has_limb(const Interval& interval) const;
+    bool has_contour(const Interval& interval) const;
     bool has_jump(const Interval& interval) const;
     bool has_crease(const Interval& interval) const;
     bool classify(const Interval& interval, Crossing& crossing) const;

@@ -140,8 +140,8 @@ MeshLocator::Verdict MeshLocator::classify(float spacing, const MeshCrossing& me
     using Kind = MeshCrossing::Kind;
     const Kind kind = mesh.kind;
     const bool same_id = crossing.first == crossing.second;
-    if (kind == Kind::first_limb || kind == Kind::second_limb) {
-        crossing.first_in_front = kind == Kind::first_limb;
+    if (kind == Kind::first_contour || kind == Kind::second_contour) {
+        crossing.first_in_front = kind == Kind::first_contour;
     }
     crossing.nearer = crossing.first_in_front ? crossing.first : crossing.second;
     crossing.t = mesh.t;
@@ -154,8 +154,8 @@ MeshLocator::Verdict MeshLocator::classify(float spacing, const MeshCrossing& me
             crossing.strength =
                 crease_strength(settings_, 2.0F * std::asin(std::min(0.5F * mesh.turn, 1.0F)));
             return crossing.strength > 0.0F ? Verdict::line : Verdict::nothing;
-        case Kind::first_limb:
-        case Kind::second_limb: return classify_limb(spacing, mesh, crossing);
+        case Kind::first_contour:
+        case Kind::second_contour: return classify_contour(spacing, mesh, crossing);
         case Kind::seam:
             crossing.type = LineType::intersection;
             return same_id ? Verdict::unsettled : Verdict::line;
@@ -163,9 +163,9 @@ MeshLocator::Verdict MeshLocator::classify(float spacing, const MeshCrossing& me
     return Verdict::unsettled;
 }
 
-/// A limb that touches what is behind it bounds an intersection.
-MeshLocator::Verdict MeshLocator::classify_limb(float spacing, const MeshCrossing& mesh,
-                                                Crossing& crossing) const {
+/// A contour that touches what is behind it bounds an intersection.
+MeshLocator::Verdict MeshLocator::classify_contour(float spacing, const MeshCrossing& mesh,
+                                                   Crossing& crossing) const {
     const bool same_id = crossing.first == crossing.second;
     const float interval = std::ldexp(spacing, -settings_.steps);
     const bool touches = mesh.gap <= kPositionRounding + interval * mesh.footprint;

@@ -76,7 +76,7 @@ class MeshLocator {
     void drop_slits(const SampleGrid& grid, const SurfaceFunction& describe,
                     const SampleFunction& sample, std::vector<std::uint32_t>& left);
     Verdict classify(float spacing, const MeshCrossing& mesh, Crossing& crossing) const;
-    Verdict classify_limb(float spacing, const MeshCrossing& mesh, Crossing& crossing) const;
+    Verdict classify_contour(float spacing, const MeshCrossing& mesh, Crossing& crossing) const;
     bool is_confirmed(const MeshCrossing& mesh, SurfaceKey seen) const;
     bool goes_on(const MeshCrossing& mesh, const Crossing& crossing, SurfaceKey seen) const;
 

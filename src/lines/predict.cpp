@@ -85,7 +85,7 @@ struct BallOnEdge {
     /// Where `inside` passes through zero, given its values of different sign at 0 and 1. Over a
     /// lattice edge it is a parabola, but for the fan of the rays, which bends it by less than a
     /// millionth.
-    double limb(const EdgeRays& rays, double at_0, double at_1) const {
+    double contour(const EdgeRays& rays, double at_0, double at_1) const {
         const ParabolaRoots roots(at_0, at(rays.at(0.5)).inside, at_1);
         const bool is_first = !(std::abs(roots.first - 0.5) > std::abs(roots.second - 0.5));
         return std::clamp(is_first ? roots.first : roots.second, 0.0, 1.0);
@@ -178,9 +178,9 @@ std::optional<Prediction> predict_crossing(const Viewpoint& viewpoint, Vec2f a, 
     const bool a_ends = first && a_1.inside <= 0.0;
     const bool b_begins = second && b_0.inside <= 0.0;
     if ((!second && !a_ends) || (!first && !b_begins)) return {};
-    const double end = a_ends ? ball_a.limb(rays, a_0.inside, a_1.inside) : 1.0;
-    const double begin = b_begins ? ball_b.limb(rays, b_0.inside, b_1.inside) : 0.0;
-    const auto limb_t = [&](const BallOnEdge& ball, double s) {
+    const double end = a_ends ? ball_a.contour(rays, a_0.inside, a_1.inside) : 1.0;
+    const double begin = b_begins ? ball_b.contour(rays, b_0.inside, b_1.inside) : 0.0;
+    const auto contour_t = [&](const BallOnEdge& ball, double s) {
         const Ray ray = rays.at(s);
         return ball.at(ray).nearest / ray.length();
     };
@@ -189,24 +189,25 @@ std::optional<Prediction> predict_crossing(const Viewpoint& viewpoint, Vec2f a, 
         return ball.at(ray).entry() / ray.length();
     };
 
-    if (!second) return found(Kind::first_limb, end, limb_t(ball_a, end));
-    if (!first) return found(Kind::second_limb, begin, limb_t(ball_b, begin));
+    if (!second) return found(Kind::first_contour, end, contour_t(ball_a, end));
+    if (!first) return found(Kind::second_contour, begin, contour_t(ball_b, begin));
     if (end < begin) {
         const double middle = 0.5 * (end + begin);
-        return found(Kind::gap, middle, std::min(limb_t(ball_a, middle), limb_t(ball_b, middle)));
+        return found(Kind::gap, middle,
+                     std::min(contour_t(ball_a, middle), contour_t(ball_b, middle)));
     }
 
     double before = a_0.entry() - b_0.entry();  // negative while the first is in front
     if (b_begins) {
-        const double t = limb_t(ball_b, begin);
+        const double t = contour_t(ball_b, begin);
         before = entry(ball_a, begin) - t;
-        if (before >= 0.0) return found(Kind::second_limb, begin, t);
+        if (before >= 0.0) return found(Kind::second_contour, begin, t);
     }
     double after = a_1.entry() - b_1.entry();
     if (a_ends) {
-        const double t = limb_t(ball_a, end);
+        const double t = contour_t(ball_a, end);
         after = t - entry(ball_b, end);
-        if (after <= 0.0) return found(Kind::first_limb, end, t);
+        if (after <= 0.0) return found(Kind::first_contour, end, t);
     }
     if (before >= 0.0 || after <= 0.0) return {};
     const double at = seam(rays, ball_a, ball_b, begin, before, end, after);

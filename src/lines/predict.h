@@ -10,10 +10,10 @@ namespace ink {
 /// Where the line between two surfaces crosses a lattice edge, computed from their shapes.
 struct Prediction {
     enum class Kind : std::uint8_t {
-        first_limb,   ///< the first surface ends there
-        second_limb,  ///< the second surface ends there
-        seam,         ///< they meet there
-        gap           ///< neither is there: the first has ended, the second has not begun
+        first_contour,   ///< the first surface ends there
+        second_contour,  ///< the second surface ends there
+        seam,            ///< they meet there
+        gap              ///< neither is there: the first has ended, the second has not begun
     };
     Kind kind;
     float at;              ///< along the edge, in [0, 1]

@@ -100,13 +100,13 @@ HWY_INLINE Passage pass(const Ball& ball, const Ray& ray) {
 HWY_INLINE Number entry(const Passage& passage) {
     return hn::Sub(passage.nearest, hn::Sqrt(hn::Max(passage.inside, set(0.0))));
 }
-/// Whether a ray enters one ball no nearer than another, or than that one's limb where it passes
+/// Whether a ray enters one ball no nearer than another, or than that one's contour where it passes
 /// it. Not of unit length: the order does not depend on it. Of two roots that are compared, one is
 /// taken.
-HWY_INLINE Mask enters_behind(const Passage& passage, Mask at_limb, const Passage& other) {
+HWY_INLINE Mask enters_behind(const Passage& passage, Mask at_contour, const Passage& other) {
     const Number zero = set(0.0);
     const Number inside = hn::Max(passage.inside, zero);
-    const Number other_inside = pick(at_limb, zero, hn::Max(other.inside, zero));
+    const Number other_inside = pick(at_contour, zero, hn::Max(other.inside, zero));
     const Number behind = hn::Sub(passage.nearest, other.nearest);
     const Number root = hn::Sqrt(other_inside);
     const Number least = hn::Add(behind, root);
@@ -206,8 +206,8 @@ HWY_INLINE void predict(const Viewpoint& viewpoint, const EdgeLanes& edges, int 
     Number kind = pick(one_seam, number(Prediction::Kind::seam), set(PredictionLanes::kSearch));
     kind = pick(hn::Or(second_first, first_last), none, kind);
     kind = pick(both, kind, none);
-    kind = pick(ends_first, number(Prediction::Kind::first_limb), kind);
-    kind = pick(begins_second, number(Prediction::Kind::second_limb), kind);
+    kind = pick(ends_first, number(Prediction::Kind::first_contour), kind);
+    kind = pick(begins_second, number(Prediction::Kind::second_contour), kind);
     const Mask gap = hn::And(both, hn::Lt(end, begin));
     kind = pick(gap, number(Prediction::Kind::gap), kind);
     kind =

@@ -79,7 +79,7 @@ class MeshCrosser::Crosser {
 
     MeshCrossing before_background(const MeshWay& way, bool first) {
         if (!way.ends() || way.end_at() <= 0.0 || way.end_at() >= 1.0) return {};
-        return limb(way, first, nullptr);
+        return contour(way, first, nullptr);
     }
 
     MeshCrossing between_surfaces() {
@@ -90,8 +90,8 @@ class MeshCrosser::Crosser {
         if (low > high) return {};  // something else is seen between them
         const double at_low = lead(low);
         const double at_high = lead(high);
-        if (at_low >= 0.0 && at_high >= 0.0 && high < 1.0) return limb(a, true, &b);
-        if (at_low <= 0.0 && at_high <= 0.0 && low > 0.0) return limb(b, false, &a);
+        if (at_low >= 0.0 && at_high >= 0.0 && high < 1.0) return contour(a, true, &b);
+        if (at_low <= 0.0 && at_high <= 0.0 && low > 0.0) return contour(b, false, &a);
         if (at_low > 0.0 && at_high < 0.0) return seam(low, high);
         return {};
     }
@@ -104,9 +104,10 @@ class MeshCrosser::Crosser {
         return way.ends() && at >= way.end_at() ? way.end_nearness() : way.nearness(at);
     }
 
-    MeshCrossing limb(const MeshWay& way, bool first, const MeshWay* behind) {
+    MeshCrossing contour(const MeshWay& way, bool first, const MeshWay* behind) {
         MeshCrossing crossing;
-        crossing.kind = first ? MeshCrossing::Kind::first_limb : MeshCrossing::Kind::second_limb;
+        crossing.kind =
+            first ? MeshCrossing::Kind::first_contour : MeshCrossing::Kind::second_contour;
         crossing.at_rim = way.end() == WalkEnd::rim;
         place(way.from_start(way.end_at()), way.end_nearness(), crossing);
         if (behind != nullptr) {
@@ -140,7 +141,7 @@ class MeshCrosser::Crosser {
         return crossing;
     }
 
-    /// Beside a limb, what is behind it should be seen.
+    /// Beside a contour, what is behind it should be seen.
     void add_check(const MeshWay& way, bool first, const MeshWay* behind, MeshCrossing& crossing) {
         if (check_past(first, way.last(), crossing)) {
             crossing.unless_object = (first ? pair_.first : pair_.second).object;

@@ -12,17 +12,18 @@ namespace {
 
 /// The upper half of a prism about a horizontal axis through (0, c.y, c.z), as a mesh of a round
 /// bar shows it: flat facets, 20 degrees wide, and normals interpolated between their edges. The
-/// facet at its limb begins `limb_deg` above the horizon and ends it at x = c.x.
-Surface bar(GeometryId id, Vec3d c, double radius, double limb_deg, double turn_deg) {
+/// facet at its contour begins `contour_deg` above the horizon and ends it at x = c.x.
+Surface bar(GeometryId id, Vec3d c, double radius, double contour_deg, double turn_deg) {
     const double cosine = std::cos(turn_deg * kDegrees);
     const double sine = std::sin(turn_deg * kDegrees);
     return {id, [=](double x, double y) -> std::optional<Hit> {
                 const double across = (x - c.x) * cosine + (y - c.y) * sine;
-                for (double from = limb_deg; from < 180.0; from += 20.0) {
+                for (double from = contour_deg; from < 180.0; from += 20.0) {
                     const auto edge = [&](double deg) {
                         return Vec3d{
-                            radius * (std::cos(deg * kDegrees) - std::cos(limb_deg * kDegrees)), 0,
-                            radius * (std::sin(deg * kDegrees) - std::sin(limb_deg * kDegrees))};
+                            radius * (std::cos(deg * kDegrees) - std::cos(contour_deg * kDegrees)),
+                            0,
+                            radius * (std::sin(deg * kDegrees) - std::sin(contour_deg * kDegrees))};
                     };
                     const Vec3d low = edge(from);
                     const Vec3d high = edge(from + 20.0);
@@ -41,14 +42,14 @@ Surface bar(GeometryId id, Vec3d c, double radius, double limb_deg, double turn_
             }};
 }
 
-TEST(LimbOfAMesh, InFrontOfAPlateIsASilhouetteAtAnyGapThatCanBeSeen) {
+TEST(ContourOfAMesh, InFrontOfAPlateIsASilhouetteAtAnyGapThatCanBeSeen) {
     std::size_t wrong = 0;
     std::size_t all = 0;
     for (const double radius : {20.0, 60.0, 300.0}) {
-        for (const double limb_deg : {-9.0, -5.0, -1.0, 3.0}) {
+        for (const double contour_deg : {-9.0, -5.0, -1.0, 3.0}) {
             for (const double turn_deg : {0.0, 27.0, 45.0, 131.0}) {
                 for (const double gap : {0.05, 0.1, 0.3, 0.9}) {
-                    const World world{{bar(1, {24.137, 23.711, 0}, radius, limb_deg, turn_deg),
+                    const World world{{bar(1, {24.137, 23.711, 0}, radius, contour_deg, turn_deg),
                                        plane(2, {24.137, 23.711, -gap}, {0, 0, 1})},
                                       0.5 / radius};
                     const Found found = search(world, 1);
@@ -62,7 +63,7 @@ TEST(LimbOfAMesh, InFrontOfAPlateIsASilhouetteAtAnyGapThatCanBeSeen) {
     EXPECT_EQ(wrong, 0U) << "of " << all;
 }
 
-TEST(LimbOfAMesh, ThatRunsIntoAPlateIsAnIntersection) {
+TEST(ContourOfAMesh, ThatRunsIntoAPlateIsAnIntersection) {
     for (const double radius : {20.0, 60.0, 300.0}) {
         for (const double turn_deg : {0.0, 27.0, 45.0, 131.0}) {
             for (const double sunk : {0.1, 0.3, 0.9}) {
