@@ -150,27 +150,6 @@ void InkTile::start(Layer& layer) {
     empty_ = false;
 }
 
-/// Brings together what narrow strokes and all else ink.
-void InkTile::add_narrow(Layer& layer) const {
-    const std::size_t stride = layer.planes.stride;
-    for (std::size_t k = 0; k < blocks(); ++k) {
-        if (touched_[k] == 0) continue;
-        const std::size_t first = k / across_ * kBlockSide * stride + k % across_ * kBlockSide;
-        for (std::size_t row = 0; row < kBlockSide; ++row) {
-            const std::size_t at = first + row * stride;
-            float* const coverage = layer.coverage[k].data() + row * kBlockSide;
-            for (std::size_t i = 0; i < kBlockSide; ++i) {
-                coverage[i] = std::max(coverage[i], layer.narrow[at + i]);
-            }
-            if (layer.t.empty()) continue;
-            float* const t = layer.t[k].data() + row * kBlockSide;
-            for (std::size_t i = 0; i < kBlockSide; ++i) {
-                t[i] = std::min(t[i], layer.narrow_t[at + i]);
-            }
-        }
-    }
-}
-
 void InkTile::draw_faces(int x, int y, const Lanes<float>& distance, const Lanes<float>& nx,
                          const Lanes<float>& ny, const Lanes<float>& t,
                          const Lanes<float>& strength, std::size_t style, float width) {
@@ -210,7 +189,7 @@ void InkTile::finish() {
     for (Layer& layer : layers_) {
         if (!layer.used) continue;
         if (profile_.empty()) {
-            add_narrow(layer);
+            finish_solid(layer.planes, blocks());
         } else {
             finish_soft(layer.planes, blocks(), profile_);
         }

@@ -130,7 +130,6 @@ class InkTile {
         return layer;
     }
     void start(Layer& layer);
-    void add_narrow(Layer& layer) const;
     void draw_waiting();
     void finish_alone(const Layer& layer);
     void finish_pixel(std::size_t k, std::span<const Layer* const> used);

@@ -272,6 +272,25 @@ void draw_solid_batch(const InkBatch& batch) {
     }
 }
 
+void finish_solid_blocks(const InkPlanes& planes, std::size_t blocks) {
+    std::size_t k = 0;
+    for (std::size_t row = 0; k < blocks; ++row) {
+        std::size_t first = row * kBlockSide * planes.stride;
+        for (std::size_t column = 0; column < planes.across; ++column, ++k, first += kBlockSide) {
+            if (planes.touched[k] == 0) continue;
+            for (int i = 0; i < kLanes; i += kStep) {
+                const std::size_t at =
+                    first + static_cast<std::size_t>(i / kBlockSide) * planes.stride;
+                const Number ink = load_rows(kFloats, planes.narrow + at, planes.stride);
+                store(hn::Max(load(planes.coverage[k], i), ink), planes.coverage[k], i);
+                if (planes.t == nullptr) continue;
+                const Number t = load_rows(kFloats, planes.narrow_t + at, planes.stride);
+                store(hn::Min(load(planes.t[k], i), t), planes.t[k], i);
+            }
+        }
+    }
+}
+
 /// Of a soft line: `u` is the distance from it over half its width, in [0, 1].
 HWY_INLINE Number profile_at(std::span<const float> profile, Number u) {
     const Number place = hn::Mul(u, set(static_cast<float>(profile.size() - 2)));
@@ -414,9 +433,14 @@ HWY_EXPORT(draw_border_lanes);
 HWY_EXPORT(ink_border_lanes);
 HWY_EXPORT(draw_solid_batch);
 HWY_EXPORT(draw_soft_batch);
+HWY_EXPORT(finish_solid_blocks);
 HWY_EXPORT(finish_soft_blocks);
 
 void draw_solid(const InkBatch& batch) { HWY_DYNAMIC_DISPATCH(draw_solid_batch)(batch); }
+
+void finish_solid(const InkPlanes& planes, std::size_t blocks) {
+    HWY_DYNAMIC_DISPATCH(finish_solid_blocks)(planes, blocks);
+}
 
 bool draw_borders(const Lanes<std::uint32_t>& codes, float reach, float half,
                   const Lanes<float>& depths, float behind, Lanes<float>& coverage,

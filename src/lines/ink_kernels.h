@@ -51,6 +51,9 @@ struct InkBatch {
 /// so no end claims more than the band, or it would widen the lines that go on from it.
 void draw_solid(const InkBatch& batch);
 
+/// After all strokes: brings together what narrow ones and all else ink.
+void finish_solid(const InkPlanes& planes, std::size_t blocks);
+
 /// Inks 4 x 4 pixels with the bands along the borders of what they see, each by its area under the
 /// nearest one. `codes` are BorderCodes of distances up to `reach`. Where there is ink, `nearest`
 /// becomes at most `depths` plus `behind`. False if there is none.
