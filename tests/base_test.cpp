@@ -114,6 +114,10 @@ TEST(ParseColor, ReadsEveryForm) {
     EXPECT_EQ(parse_color("255, 128,0"), (Rgb8{255, 128, 0}));
     EXPECT_EQ(parse_color("white"), (Rgb8{255, 255, 255}));
     EXPECT_EQ(parse_color("grey"), parse_color("gray"));
+    EXPECT_EQ(parse_color("aliceblue"), (Rgb8{240, 248, 255}));
+    EXPECT_EQ(parse_color("SteelBlue"), (Rgb8{70, 130, 180}));
+    EXPECT_EQ(parse_color("yellowgreen"), (Rgb8{154, 205, 50}));
+    EXPECT_FALSE(parse_color("steel"));
     EXPECT_EQ(parse_color("orange"), parse_color("#ffa500"));
 }
 
