@@ -137,7 +137,7 @@ TEST(Particles, OfSeveralKindsHaveAColourEach) {
 
 TEST(Particles, HaveOneColourWhereTypesTellNoKindsApart) {
     const TemporaryFolder folder;
-    for (const std::string_view types : {"1 1", "1 1.5", "1 nan", "sand clay", "1 clay"}) {
+    for (const std::string_view types : {"1 1", "1 1.5", "1 nan", "sand sand", "1 clay"}) {
         SCOPED_TRACE(types);
         const auto file = folder.write("a.txt", fmt::format("x y z type\n0 0 0 {}\n1 0 0 {}\n",
                                                             types.substr(0, types.find(' ')),
@@ -148,9 +148,38 @@ TEST(Particles, HaveOneColourWhereTypesTellNoKindsApart) {
     std::string names = "x,y,z,type\n";
     for (int k = 0; k < 100; ++k) names += fmt::format("{},0,0,{}\n", k, k);
     EXPECT_TRUE(spheres(read_file(folder.write("b.csv", names))).colors.empty());
-    // Words are refused where numbers are asked for.
-    expect_refused(folder.write("c.csv", "x,y,z,type\n0,0,0,sand\n"), "column 'type' is 'sand'",
-                   {.data = {.color_by = "type"}});
+}
+
+TEST(Particles, HaveAColourForEachWordInTheirOrderAndNumbersWhereNumbersAreNeeded) {
+    const TemporaryFolder folder;
+    const auto file = folder.write("a.csv",
+                                   "x,y,z,type,heat\n0,0,0,sand,1\n1,0,0,\"clay\",2\n2,0,0,sand,3\n"
+                                   "3,0,0,wet sand,4\n");
+    const std::vector<Rgb8> colors{category_color(1), category_color(0), category_color(1),
+                                   category_color(2)};
+    for (const DataSettings& data : {DataSettings{}, DataSettings{.color_by = "type"}}) {
+        for (const bool facts : {false, true}) {
+            const FileContents contents = read_file(file, {.data = data, .facts = facts});
+            EXPECT_EQ(spheres(contents).colors, colors);
+            const auto& entries = contents.objects[0].color_scale->entries;
+            ASSERT_EQ(entries.size(), 3U);
+            EXPECT_EQ(entries[0].name, "clay");
+            EXPECT_EQ(entries[2].name, "wet sand");
+            if (!facts) continue;
+            const Facts told = contents.objects[0].facts(3);
+            EXPECT_NE(
+                std::ranges::find(told, std::pair<std::string, std::string>("type", "wet sand")),
+                told.end());
+        }
+    }
+    const FileContents parts = read_file(file, {.data = {.parts = "type"}});
+    EXPECT_EQ(parts.objects[0].part_names, (std::vector<std::string>{"clay", "sand", "wet sand"}));
+    expect_refused(file, "column 'type' is 'sand', not a number; choose a column",
+                   {.data = {.radius = "type"}});
+    expect_refused(folder.write("b.csv", "x,y,z,heat\n0,0,0,NA\n1,0,0,2.5\n"),
+                   "column 'heat' is '2.5', a number among words", {.data = {.color_by = "heat"}});
+    expect_refused(folder.write("c.csv", "x,y,z,heat\n0,0,0,2.5\n1,0,0,NA\n"),
+                   "column 'heat' is 'NA', not a number", {.data = {.color_by = "heat"}});
 }
 
 TEST(Particles, OfAnExtendedXyzWithoutElementsAreThoseOfATable) {

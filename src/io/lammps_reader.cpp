@@ -211,8 +211,11 @@ FileContents read_frame(const Path& file, std::string& text, const DumpFrame& fr
     std::string problem;
     while (rows.next()) {
         if (columns.add_row(rows.line(), ' ', problem)) continue;
+        const std::string_view remedy = columns.remedy().empty()
+                                            ? "does the frame have fewer atoms than it says?"
+                                            : columns.remedy();
         throw InputError(file, frame.lines_before_rows + rows.number(),
-                         fmt::format("{}; does the frame have fewer atoms than it says?", problem));
+                         fmt::format("{}; {}", problem, remedy));
     }
     FileContents contents;
     contents.frames = frames;

@@ -14,6 +14,7 @@
 #include "base/text.h"
 #include "io/file_text.h"
 #include "io/polygon_mesh.h"
+#include "scene/kind_colors.h"
 
 namespace ink {
 
@@ -55,10 +56,13 @@ bool take_field(std::string_view& row, char separator, std::string_view& word) {
     return true;
 }
 
+std::string_view unquoted(std::string_view word) {
+    const bool quoted = word.size() >= 2 && word.front() == '"' && word.back() == '"';
+    return quoted ? word.substr(1, word.size() - 2) : word;
+}
+
 bool parse_float(std::string_view word, double& value) {
-    if (word.size() >= 2 && word.front() == '"' && word.back() == '"') {
-        word = word.substr(1, word.size() - 2);
-    }
+    word = unquoted(word);
     if (word.starts_with('+')) word.remove_prefix(1);
     const auto result = std::from_chars(word.data(), word.data() + word.size(), value);
     if (result.ec == std::errc::result_out_of_range) {
@@ -97,7 +101,7 @@ ParticleColumns::ParticleColumns(const std::filesystem::path& file,
                                  const std::vector<std::string>& names, const ReadOptions& options)
     : summarize_(options.summarize) {
     for (const std::string& name : names)
-        columns_.push_back({name, false, false, -1, {}, kMax, -kMax});
+        columns_.push_back({.name = name, .destinations = {}, .least = kMax, .most = -kMax});
     find_axes(file);
     std::vector<std::string> others;
     for (const Column& column : columns_) {
@@ -113,6 +117,14 @@ ParticleColumns::ParticleColumns(const std::filesystem::path& file,
                            std::ranges::any_of(column.destinations, [&](FieldLayout::Place place) {
                                return place.field < layout.needed;
                            });
+        column.may_be_words =
+            std::ranges::any_of(column.destinations, [&](FieldLayout::Place place) {
+                const Field& field = particles_.fields[place.field];
+                const DataSettings& data = options.data;
+                return field.components == 1 && field.name != data.radius &&
+                       (field.name == data.color_by || field.name == data.parts ||
+                        is_kind_name(field.name));
+            });
         if (column.needed) last_needed_ = c;
     }
 }
@@ -157,10 +169,19 @@ bool ParticleColumns::add_row(std::string_view row, char separator, std::string&
         }
         if (!column.needed) continue;
         double value = 0.0;
-        if (!parse_float(word, value)) {
+        const bool is_word = column.may_be_words && take_word_of(column, word, value);
+        if (is_word && column.is_number && parse_double(unquoted(word))) {
+            problem =
+                fmt::format("column '{}' is {}, a number among words", column.name, excerpt(word));
+            return false;
+        }
+        if (!is_word && !parse_float(word, value)) {
             if (column.is_number) {
                 problem =
                     fmt::format("column '{}' is {}, not a number", column.name, excerpt(word));
+                if (particles_.positions.empty() && column.axis < 0) {
+                    remedy_ = "choose a column that 'inktrace info' gives a range of numbers for";
+                }
                 return false;
             }
             value = std::numeric_limits<double>::quiet_NaN();
@@ -171,7 +192,7 @@ bool ParticleColumns::add_row(std::string_view row, char separator, std::string&
             field.values[field.values.size() - field.components + place.component] =
                 static_cast<float>(value);
         }
-        if (summarize_ && std::isfinite(value)) {
+        if (summarize_ && !is_word && std::isfinite(value)) {
             column.least = std::min(column.least, value);
             column.most = std::max(column.most, value);
         }
@@ -180,6 +201,44 @@ bool ParticleColumns::add_row(std::string_view row, char separator, std::string&
     if (particles_.positions.empty() && std::isfinite(p.x + p.y + p.z)) particles_.origin = p;
     particles_.positions.push_back(to_float(p - particles_.origin));
     return true;
+}
+
+/// Whether the word counts as one, and its number if so. Words begin in the first row.
+bool ParticleColumns::take_word_of(Column& column, std::string_view word, double& value) const {
+    const std::string_view text = unquoted(word);
+    if (text.empty()) return false;
+    if (column.words.empty() && (!particles_.positions.empty() || parse_float(word, value))) {
+        return false;
+    }
+    const auto found = column.words.find(text);
+    value = found != column.words.end()
+                ? found->second
+                : column.words.emplace(std::string(text), static_cast<float>(column.words.size()))
+                      .first->second;
+    return true;
+}
+
+/// Words in their order, so that it does not matter which comes first.
+Particles& ParticleColumns::particles() {
+    for (Column& column : columns_) {
+        if (column.words.empty()) continue;
+        std::vector<float> sorted(column.words.size());
+        std::vector<std::string> names;
+        for (const auto& [word, number] : column.words) {
+            sorted[static_cast<std::size_t>(number)] = static_cast<float>(names.size());
+            names.push_back(word);
+        }
+        for (const FieldLayout::Place place : column.destinations) {
+            Field& field = particles_.fields[place.field];
+            for (float& value : field.values) {
+                // What is missing has no number.
+                if (std::isfinite(value)) value = sorted[static_cast<std::size_t>(value)];
+            }
+            field.words = names;
+        }
+        column.words.clear();
+    }
+    return particles_;
 }
 
 std::vector<FieldSummary> ParticleColumns::summaries() const {

@@ -2,6 +2,8 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
+#include <map>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -28,12 +30,16 @@ class ParticleColumns {
 
     void reserve(std::size_t rows);
     /// Words end at `separator` (' ': at blanks). False where a word that is needed is missing or
-    /// not a number; `problem` then says so.
+    /// not a number; `problem` then says so. A column that colours or names parts may hold words
+    /// instead, from the first row on.
     bool add_row(std::string_view row, char separator, std::string& problem);
+    /// What to do about the problem, if it is not one of a single row; else empty.
+    std::string_view remedy() const { return remedy_; }
 
     /// Coordinates that are fractions of a box, as LAMMPS writes them: which of x, y, z are.
     std::array<bool, 3> scaled() const { return scaled_; }
-    Particles& particles() { return particles_; }
+    /// After the last row.
+    Particles& particles();
     std::vector<FieldSummary> summaries() const;
 
   private:
@@ -41,14 +47,18 @@ class ParticleColumns {
         std::string name;
         bool needed = false;
         bool is_number = false;  ///< in every row; else words have no value
-        int axis = -1;           ///< 0, 1, 2: a coordinate
+        bool may_be_words = false;
+        std::map<std::string, float, std::less<>> words{};  ///< in the order that they come in
+        int axis = -1;                                      ///< 0, 1, 2: a coordinate
         std::vector<FieldLayout::Place> destinations;
         double least, most;  ///< of the finite values
     };
 
+    bool take_word_of(Column& column, std::string_view word, double& value) const;
     void find_axes(const std::filesystem::path& file);
 
     std::vector<Column> columns_;
+    std::string_view remedy_;
     std::size_t last_needed_ = 0;
     bool summarize_ = false;
     std::array<bool, 3> scaled_{};

@@ -122,8 +122,10 @@ FileContents read_table(const Path& file, const ReadOptions& options) {
         const std::string_view row = trim(rows.line());
         if (row.empty() || is_comment(row)) continue;
         if (!columns.add_row(row, layout.separator, problem)) {
+            const std::string_view remedy =
+                columns.remedy().empty() ? "repair or remove the row" : columns.remedy();
             throw InputError(file, layout.lines_before + rows.number(),
-                             fmt::format("{}; repair or remove the row", problem));
+                             fmt::format("{}; {}", problem, remedy));
         }
         ++count;
     }

@@ -263,9 +263,11 @@ FileContents read_particles(const Frames& frames, const Columns& columns,
     std::string problem;
     while (rows.next()) {
         if (particles.add_row(rows.line(), ' ', problem)) continue;
-        throw InputError(
-            file, frames.wanted.count_line + 1 + rows.number(),
-            fmt::format("{}; does the frame have fewer atoms than its count line says?", problem));
+        const std::string_view remedy =
+            particles.remedy().empty() ? "does the frame have fewer atoms than its count line says?"
+                                       : particles.remedy();
+        throw InputError(file, frames.wanted.count_line + 1 + rows.number(),
+                         fmt::format("{}; {}", problem, remedy));
     }
     FileContents contents;
     contents.frames = frames.count;

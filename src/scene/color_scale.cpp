@@ -63,6 +63,21 @@ Coloring color_categories(const std::string& title, std::span<const float> value
 
 }  // namespace
 
+Coloring color_words(const std::string& title, std::span<const float> values,
+                     std::span<const std::string> words) {
+    Coloring coloring;
+    coloring.colors.reserve(values.size());
+    for (const float value : values) {
+        coloring.colors.push_back(category_color(static_cast<std::size_t>(value)));
+    }
+    coloring.scale.emplace();
+    coloring.scale->title = title;
+    for (std::size_t k = 0; k < words.size(); ++k) {
+        coloring.scale->entries.push_back({words[k], category_color(k)});
+    }
+    return coloring;
+}
+
 Coloring color_field(const std::string& title, std::span<const float> values,
                      const DataSettings& settings) {
     const ColorMap& map = *settings.color_map;

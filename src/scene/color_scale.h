@@ -37,5 +37,8 @@ struct Coloring {
 /// set; with a map of categories, a colour for each whole number.
 Coloring color_field(const std::string& title, std::span<const float> values,
                      const DataSettings& settings);
+/// The colours of a field of words, one each: `values` count them from 0 on.
+Coloring color_words(const std::string& title, std::span<const float> values,
+                     std::span<const std::string> words);
 
 }  // namespace ink

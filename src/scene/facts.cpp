@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <memory>
 
 #include "scene/elements.h"
@@ -18,7 +19,11 @@ void add_fields(const std::vector<Field>& fields, std::size_t entry, Facts& fact
         if (first + field.components > field.values.size()) continue;
         std::string text;
         for (std::size_t c = 0; c < field.components; ++c) {
-            text += fmt::format("{}{:.6g}", c == 0 ? "" : ", ", field.values[first + c]);
+            const float value = field.values[first + c];
+            text += c == 0 ? "" : ", ";
+            text += field.words.empty() || !std::isfinite(value)
+                        ? fmt::format("{:.6g}", value)
+                        : field.words[static_cast<std::size_t>(value)];
         }
         facts.emplace_back(field.name, std::move(text));
     }

@@ -57,6 +57,11 @@ std::vector<float> scalar_values(std::span<const Field> fields, std::string_view
     return values;
 }
 
+std::span<const std::string> words_of(std::span<const Field> fields, std::string_view name) {
+    const Field* const field = find_field(fields, name);
+    return field == nullptr ? std::span<const std::string>() : std::span(field->words);
+}
+
 FieldSummary summarize(const Field& field) {
     constexpr double kMax = std::numeric_limits<double>::max();
     FieldSummary summary{field.name, field.components, kMax, -kMax};

@@ -43,6 +43,7 @@ std::optional<Coloring> color_kinds(std::span<const Field> fields) {
     for (const Field& field : fields) {
         if (field.components != 1 || !is_kind_name(field.name) || !are_kinds(field.values))
             continue;
+        if (!field.words.empty()) return color_words(field.name, field.values, field.words);
         DataSettings settings;
         settings.color_map = find_color_map("categories");
         return color_field(field.name, field.values, settings);

@@ -13,7 +13,7 @@ namespace ink {
 bool is_kind_name(std::string_view name);
 
 /// The colours of particles of several kinds, one each, by the field that goes by such a name and
-/// holds whole numbers; nothing where there is none, or all are of one kind.
+/// holds whole numbers or words; nothing where there is none, or all are of one kind.
 std::optional<Coloring> color_kinds(std::span<const Field> fields);
 
 }  // namespace ink

@@ -100,13 +100,15 @@ Radii particle_radii(const Particles& particles, const DataSettings& settings, O
 
 /// Particles of one value of a field are one part.
 std::vector<std::uint32_t> parts_by_value(const std::vector<float>& values,
+                                          std::span<const std::string> words,
                                           std::vector<std::string>& names) {
     std::map<float, std::uint32_t> part_of;
     for (const float value : values) part_of.try_emplace(value, 0);
     std::uint32_t next = 0;
     for (auto& [value, part] : part_of) {
         part = next++;
-        names.push_back(fmt::format("{}", value));
+        names.push_back(words.empty() ? fmt::format("{}", value)
+                                      : words[static_cast<std::size_t>(value)]);
     }
     std::vector<std::uint32_t> parts;
     parts.reserve(values.size());
@@ -210,8 +212,10 @@ std::vector<Rgb8> particle_colors(Particles& particles, const DataSettings& sett
         object.material.color = *color;
         return {};
     }
-    return take(color_field(settings.color_by,
-                            field_values(particles, "color-by", settings.color_by), settings));
+    const std::vector<float> values = field_values(particles, "color-by", settings.color_by);
+    const std::span<const std::string> words = words_of(particles.fields, settings.color_by);
+    return take(words.empty() ? color_field(settings.color_by, values, settings)
+                              : color_words(settings.color_by, values, words));
 }
 
 Spheres make_spheres(const Particles& particles, const Radii& radii) {
@@ -273,7 +277,8 @@ std::vector<Object> represent(Particles particles, const DataSettings& settings,
     std::vector<Rgb8> colors = particle_colors(particles, settings, object);
     std::vector<std::uint32_t> parts;
     if (!settings.parts.empty()) {
-        parts = parts_by_value(field_values(particles, "ids", settings.parts), object.part_names);
+        parts = parts_by_value(field_values(particles, "ids", settings.parts),
+                               words_of(particles.fields, settings.parts), object.part_names);
     }
     std::vector<Field> fields;
     std::vector<std::uint32_t> rows;

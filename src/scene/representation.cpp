@@ -212,7 +212,7 @@ std::optional<double> uniform_radius(const std::string& text) {
     const std::optional<double> radius = parse_double(text);
     constexpr double kLargest = 1e15;
     if (radius && !(*radius > 0.0 && *radius <= kLargest)) {
-        throw UsageError(fmt::format("--radius: '{}' is not a positive number", text));
+        throw UsageError(fmt::format("'{}' is not a positive number", text));
     }
     return radius;
 }

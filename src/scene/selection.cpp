@@ -346,7 +346,7 @@ class Parser {
         const std::string_view guess = closest(lower, known);
         fail(guess.empty()
                  ? fmt::format("'{}' is no word of a selection", word)
-                 : fmt::format("'{}' is no word of a selection; did you mean {}?", word, guess));
+                 : fmt::format("'{}' is no word of a selection (did you mean {}?)", word, guess));
     }
 
     NodePointer parse_comparison(std::string field, Comparison comparison) {
