@@ -218,6 +218,24 @@ TEST(PlyReader, ReadsColoursNormalsAndSkipsTheRest) {
     EXPECT_EQ(unpack_normal(mesh_of(contents).corner_normals[0][2]), (Vec3f{0, 1, 0}));
 }
 
+TEST(MeshReaders, TakeAColourThatIsAskedFor) {
+    const TemporaryFolder folder;
+    const auto file =
+        folder.write("a.obj", "v 0 0 0 1 0 0\nv 1 0 0 0 1 0\nv 0 1 0 0 0 1\nf 1 2 3\n");
+    EXPECT_EQ(mesh_of(read_file(file)).colors.size(), 3U);
+    EXPECT_EQ(mesh_of(read_file(file, {.data = {.color_by = "chain"}})).colors.size(), 3U);
+    EXPECT_TRUE(read_file(file, {.data = {.color_by = "chain"}}).warnings.empty());
+    const FileContents typo = read_file(file, {.data = {.color_by = "steelbleu"}});
+    ASSERT_EQ(typo.warnings.size(), 1U);
+    EXPECT_TRUE(typo.warnings[0].starts_with("'steelbleu' is no colour")) << typo.warnings[0];
+    for (const auto& [word, color] :
+         {std::pair{"#0a141e", Rgb8{10, 20, 30}}, {"none", Material().color}}) {
+        const FileContents contents = read_file(file, {.data = {.color_by = word}});
+        EXPECT_TRUE(mesh_of(contents).colors.empty());
+        EXPECT_EQ(contents.objects[0].material.color, color);
+    }
+}
+
 TEST(PlyReader, NamesThePlaceAndTheRemedy) {
     const auto error = [](std::string_view from, std::string_view to) {
         return error_of("a.ply", replaced(cube_ascii_ply(), from, to));

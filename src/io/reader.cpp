@@ -6,7 +6,9 @@
 
 #include <algorithm>
 #include <array>
+#include <string>
 #include <system_error>
+#include <variant>
 #include <vector>
 
 #include "base/error.h"
@@ -66,11 +68,35 @@ void check_readable(const std::filesystem::path& file, bool wants_folder) {
     }
 }
 
+/// A colour that is set takes the place of all that a mesh has; `none` leaves it the usual one.
+void color_meshes(FileContents& contents, const std::string& color_by) {
+    const auto color = parse_color(color_by);
+    for (Object& object : contents.objects) {
+        auto* const mesh = std::get_if<Mesh>(&object.shape);
+        if (object.kind != ObjectKind::mesh || mesh == nullptr) continue;
+        if (!color && color_by != "none") {
+            // Of what is meant for a molecule in the same picture nothing is said.
+            constexpr std::array<std::string_view, 6> kOfAtoms{"element", "chain",  "chain-hetero",
+                                                               "residue", "entity", "rainbow"};
+            const bool of_atoms = std::ranges::find(kOfAtoms, color_by) != kOfAtoms.end();
+            if (color_by.empty() || object.color_scale || of_atoms) continue;
+            contents.warnings.push_back(fmt::format(
+                "'{}' is no colour, and a mesh has no field of that name; it was drawn as it is.",
+                color_by));
+            continue;
+        }
+        mesh->colors.clear();
+        object.material.color = color.value_or(Material().color);
+    }
+}
+
 /// Errors about the options become errors about the file.
 FileContents read_with(const Reader& reader, const std::filesystem::path& file,
                        const ReadOptions& options) {
     try {
-        return reader.read(file, options);
+        FileContents contents = reader.read(file, options);
+        color_meshes(contents, options.data.color_by);
+        return contents;
     } catch (const InputError&) {
         throw;
     } catch (const UsageError&) {
