@@ -39,12 +39,13 @@ struct Seen {
 
 /// What a picture of `side` pixels finds, at one of so many of its pixels.
 std::vector<Seen> look_at(const Scene& scene, const Tracer& tracer, const AmbientBake& bake,
-                          int side, unsigned one_of, View view = View::front) {
+                          int side, unsigned one_of, View view = View::front,
+                          SmallBalls small = SmallBalls::by_point) {
     Settings settings = seen_from_front(side);
     settings.view.view = view;
     const Camera camera(scene, settings.view, settings.size);
     const auto frame = tracer.frame(camera.projection(), 1);
-    const auto ambient = bake.seen_by(camera);
+    const auto ambient = bake.seen_by(camera, small);
     Sampler sampler(*frame, camera);
     std::mt19937 random(7);
     std::vector<Seen> seen;
@@ -151,6 +152,38 @@ TEST(AmbientOcclusion, OfSticksIsNearThatByRays) {
         EXPECT_LT(Comparison(scene, 3).error(256, 25), 0.006);
         EXPECT_LT(Comparison(scene, 5).error(160, 11), 0.006);
     }
+}
+
+/// As in drafts.
+TEST(AmbientOcclusion, OfSmallBallsByNodesIsNearThatByPoints) {
+    std::mt19937 random(8);
+    std::vector<Sphere> balls;
+    for (int i = 0; i < 3000; ++i) {
+        balls.push_back({uniform_point(random), 0.03F + 0.01F * uniform(random)});
+    }
+    const Scene scene({sphere_object(std::move(balls))});
+    const auto tracer = make_tracer(scene);
+    constexpr int kSide = 128;  // radii of 2 to 3 pixels
+    const AmbientBake bake(scene, *tracer, 3);
+    const auto by_point = look_at(scene, *tracer, bake, kSide, 1);
+    look_at(scene, *tracer, bake, kSide, 1, View::iso, SmallBalls::by_nodes);
+    const auto by_nodes =
+        look_at(scene, *tracer, bake, kSide, 1, View::front, SmallBalls::by_nodes);
+    ASSERT_EQ(by_nodes.size(), by_point.size());
+    double sum = 0.0;
+    double squares = 0.0;
+    for (std::size_t k = 0; k < by_point.size(); ++k) {
+        const double difference = by_nodes[k].open - by_point[k].open;
+        sum += difference;
+        squares += difference * difference;
+    }
+    const auto count = static_cast<double>(by_point.size());
+    EXPECT_LT(std::abs(sum / count), 0.006);
+    EXPECT_LT(std::sqrt(squares / count), 0.025);
+    // Whatever was seen before.
+    const AmbientBake fresh(scene, *tracer, 3);
+    const auto again = look_at(scene, *tracer, fresh, kSide, 1, View::front, SmallBalls::by_nodes);
+    for (std::size_t k = 0; k < again.size(); ++k) EXPECT_EQ(again[k].open, by_nodes[k].open);
 }
 
 TEST(AmbientOcclusion, GetsBetterWithQuality) {

@@ -33,7 +33,8 @@ void Pipeline::light_from_all_around(const RenderControl& control) {
     AmbientCache own;
     AmbientCache& cache = control.ambient != nullptr ? *control.ambient : own;
     bake = cache.get(scene, tracer, shading.ambient_quality, control.cancel);
-    ambient = bake->seen_by(camera);
+    const bool is_draft = lines.enlargement != nullptr;
+    ambient = bake->seen_by(camera, is_draft ? SmallBalls::by_nodes : SmallBalls::by_point);
     shader.use(ambient.get());
 }
 

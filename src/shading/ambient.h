@@ -1,6 +1,7 @@
 #pragma once
 
 #include <atomic>
+#include <cstdint>
 #include <memory>
 #include <mutex>
 
@@ -22,6 +23,11 @@ class AmbientOcclusion {
     virtual void openness(const SurfacePacket& surface, Lanes<float>& open) const = 0;
 };
 
+/// Of balls that are small on the picture: whether each point is computed, or they have nodes, too.
+/// These are few and far apart, which is enough for a picture of few points, as a draft is, and
+/// spares nearly all of the time while a view turns.
+enum class SmallBalls : std::uint8_t { by_point, by_nodes };
+
 /// Openness that is computed where a picture first needs it and kept for the next one. It belongs
 /// to surfaces, not to the picture: on spheres and triangles, at the nodes of a grid over each of
 /// them, whose spacing is a power of two near three pixels. So a turned or moved camera finds most
@@ -35,7 +41,8 @@ class AmbientBake {
     ~AmbientBake();
 
     /// As seen by a camera, which decides how fine the grids are. Must not outlive bake or camera.
-    std::unique_ptr<AmbientOcclusion> seen_by(const Camera& camera) const;
+    std::unique_ptr<AmbientOcclusion> seen_by(const Camera& camera,
+                                              SmallBalls small = SmallBalls::by_point) const;
 
     struct Impl;
 

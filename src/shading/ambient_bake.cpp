@@ -74,8 +74,8 @@ std::optional<float> between_two(const NormalPacket& normals, const Lanes<float>
 
 class SeenBake final : public AmbientOcclusion {
   public:
-    SeenBake(const AmbientBake::Impl& bake, const Camera& camera)
-        : bake_(bake), footprints_(camera) {}
+    SeenBake(const AmbientBake::Impl& bake, const Camera& camera, SmallBalls small)
+        : bake_(bake), footprints_(camera), small_(small) {}
 
     void openness(const SurfacePacket& surface, Lanes<float>& open) const override {
         const HitPacket& hits = surface.hits;
@@ -107,7 +107,15 @@ class SeenBake final : public AmbientOcclusion {
         const float radius_px = ball.radius / footprints_.at(ball.centre);
         const NormalPacket& normals = surface.normals;
         if (!bake_.each_point(radius_px)) {
-            bake_.on_ball(ball, ball_number, radius_px, own, normals, open);
+            bake_.on_ball(ball, ball_number, AmbientBake::Impl::ball_grid(radius_px), own, normals,
+                          open);
+            return;
+        }
+        // Of a smaller one there are more nodes than points that will be seen.
+        constexpr float kLeastRadius = 0.75F;
+        if (small_ == SmallBalls::by_nodes && !bake_.strings && radius_px > kLeastRadius) {
+            bake_.on_ball(ball, ball_number, AmbientBake::Impl::kCoarseBallGrid, own, normals,
+                          open);
             return;
         }
         const auto at_point = [&](int i) {
@@ -162,6 +170,7 @@ class SeenBake final : public AmbientOcclusion {
 
     const AmbientBake::Impl& bake_;
     Footprints footprints_;
+    SmallBalls small_;
 };
 
 }  // namespace
@@ -171,8 +180,9 @@ AmbientBake::AmbientBake(const Scene& scene, const Tracer& tracer, int quality,
     : impl_(std::make_unique<Impl>(scene, tracer, quality, cancel)) {}
 AmbientBake::~AmbientBake() = default;
 
-std::unique_ptr<AmbientOcclusion> AmbientBake::seen_by(const Camera& camera) const {
-    return std::make_unique<SeenBake>(*impl_, camera);
+std::unique_ptr<AmbientOcclusion> AmbientBake::seen_by(const Camera& camera,
+                                                       SmallBalls small) const {
+    return std::make_unique<SeenBake>(*impl_, camera, small);
 }
 
 std::shared_ptr<const AmbientBake> AmbientCache::get(const Scene& scene, const Tracer& tracer,

@@ -9,7 +9,7 @@ namespace ink {
 namespace {
 
 /// Nodes along the side of a sphere's grid, which is an octahedron unfolded to a square.
-constexpr int ball_side(std::size_t grid) { return 24 << grid; }
+constexpr int ball_side(std::size_t grid) { return grid == 0 ? 8 : 12 << grid; }
 /// Nodes that a sphere needs which the picture shows with this radius. What is kept at them varies
 /// slowly over the sphere, so they may be the farther apart the larger it is: on spheres of 8
 /// pixels 2.4, of 100 pixels 7.
@@ -21,10 +21,10 @@ constexpr float kTriangleSpacing = 6.0F;  ///< pixels between nodes, at most
 /// Smaller triangles have nodes at their corners alone, which they share.
 constexpr float kSmallTriangle = 14.0F;
 
-/// The first grid of at least so many nodes.
+/// The first grid, from one on, of at least so many nodes.
 template <class Side>
-std::size_t grid_for(float nodes, std::size_t grids, const Side& side) {
-    std::size_t grid = 0;
+std::size_t grid_for(float nodes, std::size_t first, std::size_t grids, const Side& side) {
+    std::size_t grid = first;
     while (grid + 1 < grids && static_cast<float>(side(grid)) < nodes) ++grid;
     return grid;
 }
@@ -114,15 +114,18 @@ AmbientBake::Impl::BallBake& AmbientBake::Impl::bake_of(const Sphere& ball,
     });
 }
 
-/// Of lanes that see one large ball, between nodes.
-void AmbientBake::Impl::on_ball(const Sphere& ball, std::size_t ball_number, float radius_px,
-                                std::uint32_t lanes, const NormalPacket& normals,
-                                Lanes<float>& open) const {
-    const std::size_t level = grid_for(ball_nodes(radius_px), kBallGrids, ball_side);
-    const int side = ball_side(level);
+std::size_t AmbientBake::Impl::ball_grid(float radius_px) {
+    return grid_for(ball_nodes(radius_px), kCoarseBallGrid + 1, kBallGrids, ball_side);
+}
+
+/// Of lanes that see one ball, between nodes.
+void AmbientBake::Impl::on_ball(const Sphere& ball, std::size_t ball_number,
+                                std::size_t grid_number, std::uint32_t lanes,
+                                const NormalPacket& normals, Lanes<float>& open) const {
+    const int side = ball_side(grid_number);
     const auto nodes = static_cast<std::size_t>((side + 1) * (side + 1));
     BallBake& bake = bake_of(ball, ball_number);
-    const auto grid = bake.maps.grid(level, nodes);
+    const auto grid = bake.maps.grid(grid_number, nodes);
     const auto half = 0.5F * static_cast<float>(side);
     const auto compute = [&](int column, int row) {
         const Vec3f at =
@@ -190,7 +193,7 @@ float AmbientBake::Impl::on_triangle(const HitPacket& hits, int lane,
     const float v = hits.v[lane];
     const float longest = corners.longest() / footprint;
     const float nodes_needed = longest > kSmallTriangle ? longest / kTriangleSpacing : 1.0F;
-    const std::size_t level = grid_for(nodes_needed, kTriangleGrids, triangle_side);
+    const std::size_t level = grid_for(nodes_needed, 0, kTriangleGrids, triangle_side);
     const int side = triangle_side(level);
     const float pixels = corners.area() / (footprint * footprint);
     // A sliver has more nodes than pixels.

@@ -30,7 +30,8 @@ struct AmbientBake::Impl {
     Impl(const Scene& all, const Tracer& scene_tracer, int quality,
          const std::atomic<bool>* cancel);
 
-    static constexpr std::size_t kBallGrids = 4;
+    static constexpr std::size_t kBallGrids = 5;
+    static constexpr std::size_t kCoarseBallGrid = 0;  ///< for SmallBalls::by_nodes
     static constexpr std::size_t kTriangleGrids = 8;
     /// Below this radius on the picture there are fewer pixels than nodes, and each is computed.
     static constexpr float kLeastBallGrid = 12.0F;
@@ -51,8 +52,10 @@ struct AmbientBake::Impl {
     float at_point(const Sphere& ball, std::size_t ball_number, Vec3f n) const {
         return ball_sky->openness(ball, surroundings(ball, ball_number), n * ball.radius, n);
     }
-    void on_ball(const Sphere& ball, std::size_t ball_number, float radius_px, std::uint32_t lanes,
-                 const NormalPacket& normals, Lanes<float>& open) const;
+    /// Of a ball that has nodes in any picture, by its radius there.
+    static std::size_t ball_grid(float radius_px);
+    void on_ball(const Sphere& ball, std::size_t ball_number, std::size_t grid_number,
+                 std::uint32_t lanes, const NormalPacket& normals, Lanes<float>& open) const;
     float on_stick(std::uint32_t object, std::uint32_t primitive, Vec3f point, Vec3f n) const;
     float on_triangle(const HitPacket& hits, int lane, const TriangleCorners& corners,
                       float footprint) const;
