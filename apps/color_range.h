@@ -34,4 +34,16 @@ inline std::optional<std::pair<double, double>> color_range_over(
     return all;
 }
 
+/// The field whose kinds of particles have a colour each in one of several frames, so that they do
+/// in all; empty where there is none.
+inline std::string kinds_over(const std::filesystem::path& file, std::span<const int> frames,
+                              Settings settings) {
+    for (const int frame : frames) {
+        settings.set("frame", std::to_string(frame));
+        const FileInfo info = inspect(file, settings);
+        if (info.kind_field.empty() || info.has_kinds) return info.kind_field;
+    }
+    return {};
+}
+
 }  // namespace inktrace

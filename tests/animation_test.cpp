@@ -171,6 +171,34 @@ TEST_F(CommandLine, AnimationKeepsRadiiAndColoursThatAreChosen) {
     }
 }
 
+TEST_F(CommandLine, AnimationColoursKindsInFramesThatHaveOne) {
+    folder_.write("run.lammpstrj", [] {
+        std::string text;
+        for (const int type : {1, 2, 1}) {
+            text += fmt::format(
+                "ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n2\nITEM: BOX BOUNDS pp pp pp\n0 9\n0 9\n"
+                "0 9\nITEM: ATOMS id type x y z\n1 1 0 0 0\n2 {} 1 0 0\n",
+                type);
+        }
+        return text;
+    }());
+    const auto draw = [&](const Arguments& more) {
+        Arguments arguments{"render", "run.lammpstrj", "--size", "48x48", "--quiet"};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        expect_done(run(arguments));
+    };
+    draw({"--frame", "0:2", "-o", "a#.png"});
+    draw({"--frame", "0:2", "-o", "b#.png", "--color-by", "type", "--colormap", "categories"});
+    for (const char* name : {"0.png", "1.png", "2.png"}) {
+        EXPECT_EQ(pixels(file(std::string("a") + name)), pixels(file(std::string("b") + name)));
+    }
+    // One kind in all of them is no reason for a colour.
+    draw({"--frame", "0:0", "-o", "c#.png"});
+    draw({"-o", "d.png"});
+    EXPECT_EQ(pixels(file("c0.png")), pixels(file("d.png")));
+    EXPECT_NE(pixels(file("a0.png")), pixels(file("d.png")));
+}
+
 TEST_F(CommandLine, LegendComesWithColoursOfNumbersUnlessItIsUnwanted) {
     folder_.write("a.csv", "x,y,z,radius,heat\n0,0,0,1,1\n3,0,0,1,7\n");
     const auto draw = [&](const char* name, const Arguments& more) {

@@ -73,13 +73,22 @@ class Animation {
         return loaded.frames;
     }
 
-    /// Gives the field that colours show one range over all frames, where it is not set.
+    /// Gives the field that colours show one range over all frames, where it is not set, and kinds
+    /// of particles their colours in frames with one kind, too.
     void keep_colors(FrameRange range) {
-        if (settings_.get("color-by").empty() || !settings_.get("color-range").empty()) return;
         const std::vector<std::filesystem::path> files(arguments_.inputs.begin(),
                                                        arguments_.inputs.end());
         std::vector<int> frames(static_cast<std::size_t>(range.last - range.first) + 1);
         std::iota(frames.begin(), frames.end(), range.first);
+        if (settings_.get("color-by").empty()) {
+            const std::string field =
+                files.size() == 1 ? kinds_over(files[0], frames, settings_) : "";
+            if (field.empty()) return;
+            settings_.set("color-by", field).set("colormap", "categories");
+            stale_ = true;
+            return;
+        }
+        if (!settings_.get("color-range").empty()) return;
         const auto values = color_range_over(files, frames, settings_, [](double) { return true; });
         if (!values) return;
         settings_.set("color-range", fmt::format("{}:{}", values->first, values->second));

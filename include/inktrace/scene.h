@@ -44,6 +44,10 @@ struct FileInfo {
     /// Of the field that gives the colours, or its length where it has components: the values at
     /// the ends of the colour map.
     std::optional<std::pair<double, double>> color_range{};
+    /// Of particles: the field that could tell kinds of them apart (type, material), and whether it
+    /// gives the colours, because there are several.
+    std::string kind_field{};
+    bool has_kinds = false;
     std::vector<std::string> warnings;  ///< what was left out or guessed
 };
 

@@ -11,6 +11,7 @@
 #include "api/impl.h"
 #include "api/scene_file.h"
 #include "io/reader.h"
+#include "scene/kind_colors.h"
 #include "scene/mesh.h"
 
 namespace inktrace {
@@ -130,8 +131,14 @@ FileInfo describe(const std::filesystem::path& file, const ink::FileContents& co
                   .memory_bytes = ink::cost_of(contents.objects).bytes(),
                   .chosen_radius = contents.objects.front().chosen_radius,
                   .color_range = color_range(contents.objects.front()),
+                  .kind_field = {},
+                  .has_kinds = false,
                   .warnings = contents.warnings};
+    const ink::Object& first = contents.objects.front();
+    info.has_kinds = first.kind == ink::ObjectKind::particles && first.color_scale &&
+                     first.color_scale->map == nullptr;
     for (const ink::FieldSummary& field : contents.fields) {
+        if (info.kind_field.empty() && ink::is_kind_name(field.name)) info.kind_field = field.name;
         info.fields.push_back({field.name, field.components, field.least, field.most});
     }
     return info;
