@@ -29,13 +29,14 @@ Size read_size(std::string_view text) {
     // libpng, libtiff and libjpeg agree on this much; memory is checked with the other settings.
     constexpr int kMost = 65500;
     const auto sides = split(text, 'x');
-    if (sides.size() != 2) {
+    const auto is_whole = [](std::string_view side) { return parse_int(side).has_value(); };
+    if (sides.size() != 2 || !std::ranges::all_of(sides, is_whole)) {
         throw UsageError(
-            fmt::format("'{}' is not a size; write WIDTHxHEIGHT, as in 1024x768", text));
+            fmt::format("'{}' is not a size; write WIDTHxHEIGHT in pixels, as in 1024x768", text));
     }
     const auto side = [&](std::string_view part) {
         const auto value = parse_int(part);
-        if (!value || *value < 1 || *value > kMost) {
+        if (*value < 1 || *value > kMost) {
             throw UsageError(
                 fmt::format("'{}' has a side that is not from 1 to {} pixels", text, kMost));
         }
@@ -179,6 +180,12 @@ std::string print(LineTypes types) {
 
 void read_background(Settings& settings, std::string_view text) {
     const bool transparent = text == "transparent";
+    if (!transparent && !parse_color(text)) {
+        throw UsageError(fmt::format(
+            "'{}' is not a colour; write transparent, a name such as white, #rrggbb, or r,g,b from "
+            "0 to 255",
+            text));
+    }
     if (!transparent) settings.shading.background = read_color(text);
     settings.shading.transparent_background = transparent;
 }
