@@ -58,8 +58,7 @@ void LatticeBlocks::lay_row(const SampleGrid& grid, const Sampler& sampler, int 
             sampler.reached(box, kBlockSide * grid.spacing, std::min(blocks_across_ - k, kAtOnce));
         for (; reached != 0; reached &= reached - 1) {
             const int column = k + std::countr_zero(reached);
-            block_at_[static_cast<std::size_t>(row * blocks_across_ + column)] =
-                static_cast<std::uint32_t>(packets_.size());
+            block_at_[index(column, row)] = static_cast<std::uint32_t>(packets_.size());
             // Field by field: to copy at once what was stored in pieces takes a wait.
             Block& block = packets_.emplace_back();
             block.x = grid.x0 + column * kBlockSide;

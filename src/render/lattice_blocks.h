@@ -42,12 +42,13 @@ class LatticeBlocks {
     }
     /// The packet of the block in a column and row of blocks, or kEmpty; those after it in its row
     /// follow it in memory.
-    const std::uint32_t& block(int column, int row) const {
-        return block_at_[static_cast<std::size_t>(row) * static_cast<std::size_t>(blocks_across_) +
-                         static_cast<std::size_t>(column)];
-    }
+    const std::uint32_t& block(int column, int row) const { return block_at_[index(column, row)]; }
 
   private:
+    std::size_t index(int column, int row) const {
+        return static_cast<std::size_t>(row) * static_cast<std::size_t>(blocks_across_) +
+               static_cast<std::size_t>(column);
+    }
     void lay_row(const SampleGrid& grid, const Sampler& sampler, int row, bool whole);
     std::uint32_t lay_strip(const SampleGrid& grid, const Sampler& sampler, const Block& strip);
 

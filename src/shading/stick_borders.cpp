@@ -52,13 +52,12 @@ std::size_t StickBorders::other_half(const Sticks& sticks, std::size_t stored) {
     return sticks.by_parts && parts[stored] != parts[other] ? stored : other;
 }
 
-StickBorders::Border StickBorders::border_of(const Glyphs& glyphs, std::size_t primitive) {
-    const std::size_t stored = glyphs.numbering().source(primitive);
-    const int to_other = glyphs.other_half[stored];
+StickBorders::Border StickBorders::border_of(const Glyphs& glyphs, std::size_t primitive,
+                                             std::size_t other) {
     const Placement place = glyphs.at(primitive);
-    const Vec3f to_end = to_other > 0 ? place.z_axis : -place.z_axis;
-    return {place.origin + to_end, to_end * (-1.0F / length(to_end)),
-            glyphs.colors[stored + static_cast<std::size_t>(to_other)]};
+    const bool is_first = glyphs.numbering().source(primitive) < other;
+    const Vec3f to_end = is_first ? place.z_axis : -place.z_axis;
+    return {place.origin + to_end, to_end * (-1.0F / length(to_end)), glyphs.colors[other]};
 }
 
 /// Share of a lane's pixel that lies beyond the border of the half that it hit.
@@ -96,18 +95,19 @@ void StickBorders::mix(const SurfacePacket& surface, ColorLanes& colors) const {
         const Glyphs& glyphs = *objects_[object].glyphs;
         const std::uint32_t primitive = surface.hits.primitive[i];
         const std::size_t stored = glyphs.numbering().source(primitive);
-        if (other_half(objects_[object], stored) == stored) continue;
+        const std::size_t other = other_half(objects_[object], stored);
+        if (other == stored) continue;
         if (object != last_object || primitive != last_primitive) {
-            border = border_of(glyphs, primitive);
+            border = border_of(glyphs, primitive, other);
             last_object = object;
             last_primitive = primitive;
         }
         const float share = beyond(border, surface, i);
         if (share <= 0.0F) continue;
-        const Color other = srgb_decode(border.color);
-        colors.r[i] += share * (other.r - colors.r[i]);
-        colors.g[i] += share * (other.g - colors.g[i]);
-        colors.b[i] += share * (other.b - colors.b[i]);
+        const Color color = srgb_decode(border.color);
+        colors.r[i] += share * (color.r - colors.r[i]);
+        colors.g[i] += share * (color.g - colors.g[i]);
+        colors.b[i] += share * (color.b - colors.b[i]);
     }
 }
 

@@ -34,7 +34,7 @@ class StickBorders {
     struct Border;
     /// The other half of a stored one, if the border between them is smoothed, or else itself.
     static std::size_t other_half(const Sticks& sticks, std::size_t stored);
-    static Border border_of(const Glyphs& glyphs, std::size_t primitive);
+    static Border border_of(const Glyphs& glyphs, std::size_t primitive, std::size_t other);
     float beyond(const Border& border, const SurfacePacket& surface, int lane) const;
 
     std::vector<Sticks> objects_;
