@@ -183,6 +183,7 @@ double bare_speedup(const BareLoop& bare, const BareLoop::Pinhole& rays, int thr
         const auto start = std::chrono::steady_clock::now();
         {
             std::vector<std::jthread> loops;
+            loops.reserve(static_cast<std::size_t>(threads));
             for (int i = 0; i < threads; ++i) {
                 loops.emplace_back([&] {
                     std::size_t hits = 0;
