@@ -32,6 +32,16 @@ Settings seen_from_front(int side) {
     return settings;
 }
 
+/// At random places of a cube of side 1, of radii from `least` on.
+std::vector<Sphere> random_balls(unsigned seed, int count, float least, float spread) {
+    std::mt19937 random(seed);
+    std::vector<Sphere> balls;
+    for (int i = 0; i < count; ++i) {
+        balls.push_back({uniform_point(random), least + spread * uniform(random)});
+    }
+    return balls;
+}
+
 struct Seen {
     Vec3f point, normal;
     float open;
@@ -156,12 +166,8 @@ TEST(AmbientOcclusion, OfSticksIsNearThatByRays) {
 
 /// As in drafts.
 TEST(AmbientOcclusion, OfSmallBallsByNodesIsNearThatByPoints) {
-    std::mt19937 random(8);
-    std::vector<Sphere> balls;
-    for (int i = 0; i < 3000; ++i) {
-        balls.push_back({uniform_point(random), 0.03F + 0.01F * uniform(random)});
-    }
-    const Scene scene({sphere_object(std::move(balls))});
+    const std::vector<Sphere> balls = random_balls(8, 3000, 0.03F, 0.01F);
+    const Scene scene({sphere_object(balls)});
     const auto tracer = make_tracer(scene);
     constexpr int kSide = 128;  // radii of 2 to 3 pixels
     const AmbientBake bake(scene, *tracer, 3);
@@ -187,12 +193,8 @@ TEST(AmbientOcclusion, OfSmallBallsByNodesIsNearThatByPoints) {
 }
 
 TEST(AmbientOcclusion, GetsBetterWithQuality) {
-    std::mt19937 random(3);
-    std::vector<Sphere> balls;
-    for (int i = 0; i < 400; ++i) {
-        balls.push_back({uniform_point(random), 0.02F + 0.08F * uniform(random)});
-    }
-    const Scene scene({sphere_object(std::move(balls))});
+    const std::vector<Sphere> balls = random_balls(3, 400, 0.02F, 0.08F);
+    const Scene scene({sphere_object(balls)});
     const double low = Comparison(scene, 1).error(192, 22);
     const double high = Comparison(scene, 5).error(192, 22);
     EXPECT_LT(high, 0.6 * low);
@@ -310,11 +312,7 @@ TEST(AmbientOcclusion, IsGivenUpWhenToldTo) {
 }
 
 TEST(AmbientOcclusion, IsTheSameWhateverTheThreadsTilesAndWhatWasSeenBefore) {
-    std::mt19937 random(5);
-    std::vector<Sphere> balls;
-    for (int i = 0; i < 300; ++i) {
-        balls.push_back({uniform_point(random), 0.03F + 0.06F * uniform(random)});
-    }
+    const std::vector<Sphere> balls = random_balls(5, 300, 0.03F, 0.06F);
     for (const bool with_mesh : {false, true}) {
         std::vector<Object> objects{sphere_object(balls)};
         if (with_mesh) {
@@ -346,11 +344,7 @@ TEST(AmbientOcclusion, IsTheSameWhateverTheThreadsTilesAndWhatWasSeenBefore) {
 
 /// Pixels between others are not all computed: also where a tile ends between them.
 TEST(AmbientOcclusion, OfSmallBallsAndSticksIsTheSameWhateverTheTiles) {
-    std::mt19937 random(6);
-    std::vector<Sphere> balls;
-    for (int i = 0; i < 300; ++i) {
-        balls.push_back({uniform_point(random), 0.06F + 0.03F * uniform(random)});
-    }
+    const std::vector<Sphere> balls = random_balls(6, 300, 0.06F, 0.03F);
     ReadOptions options;
     options.data.representation = Representation::sticks;
     const std::filesystem::path file = source_dir() / "samples" / "acetaminophen.xyz";

@@ -106,16 +106,8 @@ class SeenBake final : public AmbientOcclusion {
         const std::size_t ball_number = bake_.first_ball[hits.object[any]] + primitive;
         const float radius_px = ball.radius / footprints_.at(ball.centre);
         const NormalPacket& normals = surface.normals;
-        if (!bake_.each_point(radius_px)) {
-            bake_.on_ball(ball, ball_number, AmbientBake::Impl::ball_grid(radius_px), own, normals,
-                          open);
-            return;
-        }
-        // Of a smaller one there are more nodes than points that will be seen.
-        constexpr float kLeastRadius = 0.75F;
-        if (small_ == SmallBalls::by_nodes && !bake_.strings && radius_px > kLeastRadius) {
-            bake_.on_ball(ball, ball_number, AmbientBake::Impl::kCoarseBallGrid, own, normals,
-                          open);
+        if (const auto grid = grid_of(radius_px)) {
+            bake_.on_ball(ball, ball_number, *grid, own, normals, open);
             return;
         }
         const auto at_point = [&](int i) {
@@ -144,6 +136,16 @@ class SeenBake final : public AmbientOcclusion {
             }
             open[i] = pairs > 0.0F ? std::min(sum / pairs, 1.0F) : at_point(i);
         });
+    }
+
+    /// The grid of a ball that has nodes.
+    std::optional<std::size_t> grid_of(float radius_px) const {
+        if (!bake_.each_point(radius_px)) return AmbientBake::Impl::ball_grid(radius_px);
+        // Of a smaller one there are more nodes than points that will be seen.
+        constexpr float kLeastRadius = 0.75F;
+        const bool by_nodes = small_ == SmallBalls::by_nodes && !bake_.strings;
+        if (!by_nodes || radius_px <= kLeastRadius) return {};
+        return AmbientBake::Impl::kCoarseBallGrid;
     }
 
     const Shape& shape_of(const HitPacket& hits, int i) const {
