@@ -8,19 +8,18 @@
 namespace ink {
 
 void MeshLocator::locate(const SampleGrid& grid, std::span<const SuspectEdge> suspects,
-                         std::span<const MeshEdge> edges, const IdentifyFunction& identify,
-                         const SurfaceFunction& describe, const SampleFunction& sample,
-                         std::vector<Crossing>& crossings, std::vector<std::uint32_t>& left) {
+                         std::span<const MeshEdge> edges, std::vector<Crossing>& crossings,
+                         std::vector<std::uint32_t>& left) {
     constexpr int kMostFolds = 4;
     doubted_.clear();
     slits_.clear();
     start(grid, suspects, edges);
     for (int fold = 0; fold < kMostFolds && !open_.empty(); ++fold) {
         look(grid.spacing, crossings, left);
-        check(grid.spacing, identify, crossings, left);
+        check(grid.spacing, crossings, left);
     }
     for (const Search& search : open_) left.push_back(search.edge);
-    if (!doubted_.empty()) drop_slits(grid, describe, sample, left);
+    if (!doubted_.empty()) drop_slits(grid, left);
 }
 
 void MeshLocator::start(const SampleGrid& grid, std::span<const SuspectEdge> suspects,
@@ -53,7 +52,7 @@ void MeshLocator::look(float spacing, std::vector<Crossing>& crossings,
     checked_.clear();
     points_.clear();
     found_.resize(pairs_.size());
-    cross_(pairs_, found_, expected_);
+    ask_.cross(pairs_, found_, expected_);
     for (std::uint32_t n = 0; n < pairs_.size(); ++n) {
         const Search& search = open_[n];
         const SeenPair& pair = pairs_[n];
@@ -79,10 +78,10 @@ void MeshLocator::look(float spacing, std::vector<Crossing>& crossings,
 }
 
 /// What the rays tell; what must be looked at again stays open.
-void MeshLocator::check(float spacing, const IdentifyFunction& identify,
-                        std::vector<Crossing>& crossings, std::vector<std::uint32_t>& left) {
+void MeshLocator::check(float spacing, std::vector<Crossing>& crossings,
+                        std::vector<std::uint32_t>& left) {
     seen_.resize(points_.size());
-    identify(points_, seen_);
+    ask_.identify(points_, seen_);
     std::size_t open = 0;
     for (std::size_t n = 0; n < checked_.size(); ++n) {
         const auto& [number, crossing] = checked_[n];
@@ -111,17 +110,16 @@ void MeshLocator::check(float spacing, const IdentifyFunction& identify,
 
 /// Where the surface on the far side of the line goes on past the near end, that end looked into a
 /// slit.
-void MeshLocator::drop_slits(const SampleGrid& grid, const SurfaceFunction& describe,
-                             const SampleFunction& sample, std::vector<std::uint32_t>& left) {
+void MeshLocator::drop_slits(const SampleGrid& grid, std::vector<std::uint32_t>& left) {
     const auto seen_at = [&](std::size_t point) {
         Sample seen = grid.sample(point);
-        describe(point, seen);
+        ask_.describe(point, seen);
         return seen;
     };
     points_.clear();
     for (const Doubt& doubt : doubted_) points_.push_back(doubt.past);
     samples_.resize(points_.size());
-    sample(points_, samples_);
+    ask_.sample(points_, samples_);
     for (std::size_t n = 0; n < doubted_.size(); ++n) {
         const auto& [search, first, past] = doubted_[n];
         const Sample before = seen_at(first ? search.at_second : search.at_first);
@@ -191,7 +189,7 @@ bool MeshLocator::goes_on(const MeshCrossing& mesh, const Crossing& crossing,
                           SurfaceKey seen) const {
     const bool within = mesh.checked_at > 0.0F && mesh.checked_at < 1.0F;
     return within && crossing.type != LineType::intersection && crossing.first != crossing.second &&
-           seen.object != SurfaceKey::kNothing && id_of_(seen) == crossing.nearer;
+           seen.object != SurfaceKey::kNothing && ask_.id_of(seen) == crossing.nearer;
 }
 
 }  // namespace ink

@@ -23,24 +23,28 @@ struct MeshEdge {
 /// The geometry that a surface belongs to.
 using GeometryFunction = std::function<GeometryId(SurfaceKey)>;
 
+/// What MeshLocator asks of the scene. Like all that `lines` is given, it may be an invented one.
+struct MeshQueries {
+    MeshCrossingFunction cross;
+    GeometryFunction id_of;
+    IdentifyFunction identify;
+    SurfaceFunction describe;
+    SampleFunction sample;
+};
+
 /// Locates what Locator would between meshes whose edges know their triangles, without bisection:
 /// the crossing follows from the mesh, and one ray beside it is asked what it hits. If that is
 /// another fold of the surface that ends, the search goes on from there; if it tells that an end
 /// looked into a slit, there is no line. What that does not settle is left to Locator.
 class MeshLocator {
   public:
-    MeshLocator(const Viewpoint& viewpoint, const LocateSettings& settings,
-                MeshCrossingFunction cross, GeometryFunction id_of)
-        : viewpoint_(viewpoint),
-          settings_(settings),
-          cross_(std::move(cross)),
-          id_of_(std::move(id_of)) {}
+    MeshLocator(const Viewpoint& viewpoint, const LocateSettings& settings, MeshQueries ask)
+        : viewpoint_(viewpoint), settings_(settings), ask_(std::move(ask)) {}
 
     /// Adds crossings, and to `left` the suspect edges that are left.
     void locate(const SampleGrid& grid, std::span<const SuspectEdge> suspects,
-                std::span<const MeshEdge> edges, const IdentifyFunction& identify,
-                const SurfaceFunction& describe, const SampleFunction& sample,
-                std::vector<Crossing>& crossings, std::vector<std::uint32_t>& left);
+                std::span<const MeshEdge> edges, std::vector<Crossing>& crossings,
+                std::vector<std::uint32_t>& left);
 
     /// Suspect edges of the last call whose first end looks into a slit, and their second beside
     /// it.
@@ -71,10 +75,8 @@ class MeshLocator {
                std::span<const MeshEdge> edges);
     MeshChecks checks_on(Vec2f way, float spacing) const;
     void look(float spacing, std::vector<Crossing>& crossings, std::vector<std::uint32_t>& left);
-    void check(float spacing, const IdentifyFunction& identify, std::vector<Crossing>& crossings,
-               std::vector<std::uint32_t>& left);
-    void drop_slits(const SampleGrid& grid, const SurfaceFunction& describe,
-                    const SampleFunction& sample, std::vector<std::uint32_t>& left);
+    void check(float spacing, std::vector<Crossing>& crossings, std::vector<std::uint32_t>& left);
+    void drop_slits(const SampleGrid& grid, std::vector<std::uint32_t>& left);
     Verdict classify(float spacing, const MeshCrossing& mesh, Crossing& crossing) const;
     Verdict classify_contour(float spacing, const MeshCrossing& mesh, Crossing& crossing) const;
     bool is_confirmed(const MeshCrossing& mesh, SurfaceKey seen) const;
@@ -82,8 +84,7 @@ class MeshLocator {
 
     Viewpoint viewpoint_;
     LocateSettings settings_;
-    MeshCrossingFunction cross_;
-    GeometryFunction id_of_;
+    MeshQueries ask_;
     std::vector<Search> open_;
     std::vector<SeenPair> pairs_;      ///< of each search: the ends of what is looked at
     std::vector<MeshCrossing> found_;  ///< what was found there

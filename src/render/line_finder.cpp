@@ -59,6 +59,21 @@ INKTRACE_INLINE bool LineFinder::see_ball(int i, int j, BallHit& hit) const {
     return static_cast<bool>(hit.ball);
 }
 
+MeshQueries LineFinder::mesh_queries() {
+    return {.cross =
+                [this](std::span<const SeenPair> pairs, std::span<MeshCrossing> crossings,
+                       std::vector<SurfaceKey>& expected) {
+                    mesh_crosser_.cross(pairs, crossings, expected);
+                },
+            .id_of =
+                [this](SurfaceKey key) {
+                    return edges_.pipeline.ids.resolve(key.object, key.primitive);
+                },
+            .identify = identify_,
+            .describe = describe_,
+            .sample = sample_};
+}
+
 TileLines LineFinder::search(const Tile& tile) {
     found_ = {};
     strokes_.clear();
@@ -326,8 +341,7 @@ void LineFinder::locate() {
         }
     }
     ball_locator_.locate(identify_, crossings_, others_);
-    mesh_locator_.locate(grid_, suspects_, mesh_edges_, identify_, describe_, sample_, crossings_,
-                         others_);
+    mesh_locator_.locate(grid_, suspects_, mesh_edges_, crossings_, others_);
     locator_.locate_some(grid_, suspects_, others_, describe_, sample_, crossings_);
 }
 

@@ -105,20 +105,12 @@ class LineFinder {
               sample(points, out);
           }),
           ball_locator_(edges.viewpoint, edges.locate),
-          mesh_crosser_(edges.mesh_walk),
-          mesh_locator_(
-              edges.viewpoint, edges.locate,
-              [this](std::span<const SeenPair> pairs, std::span<MeshCrossing> crossings,
-                     std::vector<SurfaceKey>& expected) {
-                  mesh_crosser_.cross(pairs, crossings, expected);
-              },
-              [&edges](SurfaceKey key) {
-                  return edges.pipeline.ids.resolve(key.object, key.primitive);
-              }),
           identify_([this](std::span<const Vec2f> points, std::span<SurfaceKey> out) {
               identify(points, out);
           }),
           describe_([this](std::size_t point, Sample& sample) { describe(point, sample); }),
+          mesh_crosser_(edges.mesh_walk),
+          mesh_locator_(edges.viewpoint, edges.locate, mesh_queries()),
           smoothing_(edges.q),
           smooths_(front && edges.smooth_shading &&
                    edges.pipeline.settings.compose != Compose::lines),
@@ -137,6 +129,7 @@ class LineFinder {
         fills_grid_ = !takes_shades_ || crosses_faces();
     }
 
+    MeshQueries mesh_queries();
     bool can_take_shades() const;
     void trace_lattice(const Tile& tile);
     void make_room();
@@ -226,10 +219,10 @@ class LineFinder {
     Locator locator_;
     SampleFunction sample_;
     BallLocator ball_locator_;
-    MeshCrosser mesh_crosser_;
-    MeshLocator mesh_locator_;
     IdentifyFunction identify_;
     SurfaceFunction describe_;
+    MeshCrosser mesh_crosser_;
+    MeshLocator mesh_locator_;
     std::optional<SpecularSearch> specular_;
     Connector connector_;
     SampleGrid grid_;
