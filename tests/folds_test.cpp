@@ -49,11 +49,7 @@ struct Mended {
 
 Mended mend(const SampleFunction& sample, const World& world, float width) {
     Mended mended{search(world, 1), {}, {}};
-    Viewpoint viewpoint;
-    viewpoint.dir = {0, 0, -1};
-    viewpoint.parallel = true;
-    viewpoint.origin = {{0, 0, 2}, {world.unit, 0, 0}, {0, -world.unit, 0}};
-    viewpoint.direction = {{0, 0, -1}, {}, {}};
+    const Viewpoint viewpoint = viewpoint_of(world.unit);
     mended.repairs = mend_folds(mended.found.segments, viewpoint, 1.0F, width, sample);
     mended.lines = mended.found.segments;
     for (auto k = mended.repairs.crumbs.rbegin(); k != mended.repairs.crumbs.rend(); ++k) {
@@ -87,14 +83,6 @@ void sample_plane(std::span<const Vec2f> points, std::span<Sample> out) {
     std::ranges::transform(points, out.begin(), [](Vec2f p) {
         return Sample{1, {p.x, -p.y, 0.0F}, {0, 0, 1}, 2.0F};
     });
-}
-Viewpoint above_plane() {
-    Viewpoint viewpoint;
-    viewpoint.dir = {0, 0, -1};
-    viewpoint.parallel = true;
-    viewpoint.origin = {{0, 0, 2}, {1, 0, 0}, {0, -1, 0}};
-    viewpoint.direction = {{0, 0, -1}, {}, {}};
-    return viewpoint;
 }
 
 TEST(BrokenFold, IsOneLineWhereTheSurfaceStaysSteep) {
@@ -156,7 +144,7 @@ TEST(BrokenFold, IsFollowedToAnEndFromWhichNoValleyGoesOn) {
                 return seen;
             });
         };
-        const FoldRepairs repairs = mend_folds(lines, above_plane(), 1.0F, 2.0F, sample);
+        const FoldRepairs repairs = mend_folds(lines, viewpoint_of(1.0), 1.0F, 2.0F, sample);
         ASSERT_FALSE(repairs.bridges.empty());
         for (const Segment& bridge : repairs.bridges) EXPECT_LE(bridge.b.x, end.x);
     }
@@ -204,7 +192,7 @@ TEST(BrokenFold, IsOneLineWhereTheWaysOnFromItsEndsComeNearEachOther) {
                 return seen;
             });
         };
-        return mend_folds(lines, above_plane(), 1.0F, 2.0F, sample).bridges;
+        return mend_folds(lines, viewpoint_of(1.0), 1.0F, 2.0F, sample).bridges;
     };
     float length_x = 0.0F;
     for (const Segment& bridge : bridges(2.0F, 0.15F)) {
@@ -221,7 +209,7 @@ TEST(DoubledFold, IsOneWhereNoHalfStrokeFitsInBetween) {
         std::vector<Segment> lines;
         add_fold(lines, 0.5F, 60.5F, 10.0F);
         add_fold(lines, 50.5F, 110.5F, 10.0F + apart);
-        const FoldRepairs repairs = mend_folds(lines, above_plane(), 1.0F, 2.0F, sample_plane);
+        const FoldRepairs repairs = mend_folds(lines, viewpoint_of(1.0), 1.0F, 2.0F, sample_plane);
         const auto drawn_at = [&](float x) {
             std::ptrdiff_t count = 0;
             for (std::size_t k = 0; k < lines.size(); ++k) {
@@ -271,11 +259,7 @@ TEST(CrumbOfAFold, ThatHangsOnAnotherLineIsDroppedHoweverDeepIfItIsAHair) {
         flat(2, 300.0, [](double x, double y) { return x + 0.3 * (y - kLine) < 20.3; });
     const World world{{broken_fold(0.1, 18.0, {{10, 25}}), plate}};
     const auto folds = [&](float width) {
-        Viewpoint viewpoint;
-        viewpoint.dir = {0, 0, -1};
-        viewpoint.parallel = true;
-        viewpoint.origin = {{0, 0, 2}, {world.unit, 0, 0}, {0, -world.unit, 0}};
-        viewpoint.direction = {{0, 0, -1}, {}, {}};
+        const Viewpoint viewpoint = viewpoint_of(world.unit);
         const Found found = search(world, 1);
         const FoldRepairs repairs =
             mend_folds(found.segments, viewpoint, 1.0F, width,
@@ -296,21 +280,17 @@ TEST(BrokenFold, IsMendedAlikeWhateverTheOrderOfItsPiecesAndByAnyNumberOfWorkers
     const Mended mended = mend(world, 2.0F);
     std::vector<Segment> shuffled = mended.found.segments;
     std::ranges::shuffle(shuffled, std::mt19937(1));
-    Viewpoint viewpoint;
-    viewpoint.dir = {0, 0, -1};
-    viewpoint.parallel = true;
-    viewpoint.origin = {{0, 0, 2}, {world.unit, 0, 0}, {0, -world.unit, 0}};
-    viewpoint.direction = {{0, 0, -1}, {}, {}};
+    const Viewpoint viewpoint = viewpoint_of(world.unit);
     const FoldWorker worker{[&](std::span<const Vec2f> points, std::span<Sample> out) {
                                 std::ranges::transform(points, out.begin(), world);
                             },
                             {}};
-    const std::vector<FoldWorker> workers(3, worker);
-    const FoldLoop backwards = [](std::size_t count, const auto& body) {
-        for (std::size_t k = count; k-- > 0;) body(k, k % 3);
-    };
-    const FoldRepairs again = mend_folds(shuffled, plane::SegmentSquares(shuffled), viewpoint, 1.0F,
-                                         2.0F, workers, backwards);
+    const FoldTeam backwards{std::vector<FoldWorker>(3, worker),
+                             [](std::size_t count, const auto& body) {
+                                 for (std::size_t k = count; k-- > 0;) body(k, k % 3);
+                             }};
+    const FoldRepairs again =
+        mend_folds(shuffled, plane::SegmentSquares(shuffled), viewpoint, 1.0F, 2.0F, backwards);
     ASSERT_EQ(again.bridges.size(), mended.repairs.bridges.size());
     for (std::size_t k = 0; k < again.bridges.size(); ++k) {
         EXPECT_EQ(again.bridges[k].a, mended.repairs.bridges[k].a);
@@ -330,11 +310,7 @@ TEST(CrumbOfAFold, LeavesNothingThatHungOnItBehind) {
             {flat(1, 0.0, [](double, double) { return true; }),
              flat(1, 0.3, [](double x, double y) { return x < 10.0 && y < 24.0; }),
              flat(1, depth, [](double x, double y) { return x > 10.5 && y < 24.0; })}};
-        Viewpoint viewpoint;
-        viewpoint.dir = {0, 0, -1};
-        viewpoint.parallel = true;
-        viewpoint.origin = {{0, 0, 2}, {world.unit, 0, 0}, {0, -world.unit, 0}};
-        viewpoint.direction = {{0, 0, -1}, {}, {}};
+        const Viewpoint viewpoint = viewpoint_of(world.unit);
         const FoldRepairs repairs =
             mend_folds(lines, viewpoint, 1.0F, 2.0F,
                        [&](std::span<const Vec2f> points, std::span<Sample> out) {
@@ -353,7 +329,7 @@ TEST(CrumbOfAFold, IsARingThatItsOwnLineFills) {
         const Vec2f high = low + Vec2f{side, side};
         const std::vector<Segment> ring = fold(low, {high.x, low.y}) + fold({high.x, low.y}, high) +
                                           fold(high, {low.x, high.y}) + fold({low.x, high.y}, low);
-        const FoldRepairs repairs = mend_folds(ring, above_plane(), 1.0F, 2.0F, sample_plane);
+        const FoldRepairs repairs = mend_folds(ring, viewpoint_of(1.0), 1.0F, 2.0F, sample_plane);
         EXPECT_EQ(repairs.crumbs.size(), side < 1.0F ? ring.size() : 0U) << side;
     }
 }
@@ -370,7 +346,7 @@ TEST(CrumbOfAFold, StaysAsFarAsAnotherFoldGoesOnAlongIt) {
         outline.a = {16.5F, y};
         outline.b = {16.5F, y + 1.0F};
     }
-    const FoldRepairs repairs = mend_folds(lines, above_plane(), 1.0F, 3.0F, sample_plane);
+    const FoldRepairs repairs = mend_folds(lines, viewpoint_of(1.0), 1.0F, 3.0F, sample_plane);
     for (float x = 17.0F; x < 60.0F; x += 1.0F) {
         int count = 0;
         for (std::size_t k = 0; k < folds; ++k) {
@@ -385,7 +361,7 @@ TEST(DoubledFold, StaysWhereALineOfAnotherKindGoesOnAsIt) {
     const std::vector<Segment> folds =
         fold({10.5F, 20.0F}, {70.5F, 20.0F}) + fold({20.5F, 21.5F}, {60.5F, 21.5F});
     const auto dropped = [&](const std::vector<Segment>& lines) {
-        return mend_folds(lines, above_plane(), 1.0F, 2.0F, sample_plane).crumbs.size();
+        return mend_folds(lines, viewpoint_of(1.0), 1.0F, 2.0F, sample_plane).crumbs.size();
     };
     EXPECT_GT(dropped(folds), 30U);
     EXPECT_EQ(dropped(folds + straight({60.5F, 21.5F}, {70.5F, 24.0F}, LineType::boundary)), 0U);

@@ -157,6 +157,16 @@ struct Found {
 
 inline constexpr int kSide = 48;  ///< of a tile, pixels
 
+/// How worlds are seen: straight down, in parallel, pixels of side `unit`.
+inline Viewpoint viewpoint_of(double unit) {
+    Viewpoint viewpoint;
+    viewpoint.dir = {0, 0, -1};
+    viewpoint.parallel = true;
+    viewpoint.origin = {{0, 0, 2}, {unit, 0, 0}, {0, -unit, 0}};
+    viewpoint.direction = {{0, 0, -1}, {}, {}};
+    return viewpoint;
+}
+
 /// Searches `columns` x `rows` points of a lattice of q x q a pixel, from point (i0, j0) on.
 inline Found search(const World& world, int q, int i0, int j0, int columns, int rows) {
     Found found;
@@ -179,11 +189,7 @@ inline Found search(const World& world, int q, int i0, int j0, int columns, int 
             grid.t[k] = sample.t;
         }
     }
-    Viewpoint viewpoint;
-    viewpoint.dir = {0, 0, -1};
-    viewpoint.parallel = true;
-    viewpoint.origin = {{0, 0, 2}, {world.unit, 0, 0}, {0, -world.unit, 0}};
-    viewpoint.direction = {{0, 0, -1}, {}, {}};
+    const Viewpoint viewpoint = viewpoint_of(world.unit);
     const SurfaceFunction describe = [&](std::size_t k, Sample& sample) {
         const auto width = static_cast<std::size_t>(columns);
         const Sample whole =

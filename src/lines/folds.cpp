@@ -46,16 +46,15 @@ struct LooseEnd {
 class FoldMender {
   public:
     FoldMender(std::span<const Segment> lines, const SegmentSquares& squares,
-               const Viewpoint& viewpoint, float spacing, float width,
-               std::span<const FoldWorker> workers, const FoldLoop& loop,
+               const Viewpoint& viewpoint, float spacing, float width, const FoldTeam& team,
                const FoldSettings& settings)
         : lines_(lines),
           squares_(squares),
           spacing_(spacing),
           width_(width),
-          loop_(loop),
+          loop_(team.loop),
           settings_(settings),
-          probe_(lines, viewpoint, spacing, workers, settings),
+          probe_(lines, viewpoint, spacing, team.workers, settings),
           graph_(lines) {}
 
     FoldRepairs run() {
@@ -488,20 +487,17 @@ class FoldMender {
 }  // namespace
 
 FoldRepairs mend_folds(std::span<const Segment> lines, const SegmentSquares& squares,
-                       const Viewpoint& viewpoint, float spacing, float width,
-                       std::span<const FoldWorker> workers, const FoldLoop& loop,
+                       const Viewpoint& viewpoint, float spacing, float width, const FoldTeam& team,
                        const FoldSettings& settings) {
-    return FoldMender(lines, squares, viewpoint, spacing, width, workers, loop, settings).run();
+    return FoldMender(lines, squares, viewpoint, spacing, width, team, settings).run();
 }
 
 FoldRepairs mend_folds(std::span<const Segment> lines, const Viewpoint& viewpoint, float spacing,
                        float width, const SampleFunction& sample, const FoldSettings& settings) {
-    const FoldWorker worker{sample, {}};
-    const FoldLoop one_by_one = [](std::size_t count, const auto& body) {
-        for (std::size_t k = 0; k < count; ++k) body(k, 0);
-    };
-    return mend_folds(lines, SegmentSquares(lines), viewpoint, spacing, width, {&worker, 1},
-                      one_by_one, settings);
+    const FoldTeam alone{{{sample, {}}}, [](std::size_t count, const auto& body) {
+                             for (std::size_t k = 0; k < count; ++k) body(k, 0);
+                         }};
+    return mend_folds(lines, SegmentSquares(lines), viewpoint, spacing, width, alone, settings);
 }
 
 }  // namespace ink

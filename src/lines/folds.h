@@ -63,18 +63,21 @@ struct FoldWorker {
 using FoldLoop = std::function<void(
     std::size_t count, const std::function<void(std::size_t k, std::size_t worker)>& body)>;
 
+struct FoldTeam {
+    std::vector<FoldWorker> workers;
+    FoldLoop loop;  ///< over these workers
+};
+
 /// On a mesh, and on a bumpy surface, the place where a surface hides itself breaks up: between two
 /// of its folds it is merely steep. Joins such pieces of self-occlusions along the steepest way
 /// from one to the next, and finds those that are too short and shallow to mean anything, or that
-/// double another one. `lines`
-/// are all of the picture's that are seen directly, `squares` their places; `width` is that of a
-/// self-occlusion, in pixels. The result depends neither on their order nor on how many workers
-/// there are.
+/// double another one. `lines` are all of the picture's that are seen directly, `squares` their
+/// places; `spacing` is that of the lattice and `width` that of a self-occlusion, both in pixels.
+/// The result depends neither on the lines' order nor on how many workers there are.
 FoldRepairs mend_folds(std::span<const Segment> lines, const plane::SegmentSquares& squares,
-                       const Viewpoint& viewpoint, float spacing, float width,
-                       std::span<const FoldWorker> workers, const FoldLoop& loop,
+                       const Viewpoint& viewpoint, float spacing, float width, const FoldTeam& team,
                        const FoldSettings& settings = {});
-/// The same with one worker.
+/// The same on the caller's thread alone.
 FoldRepairs mend_folds(std::span<const Segment> lines, const Viewpoint& viewpoint, float spacing,
                        float width, const SampleFunction& sample,
                        const FoldSettings& settings = {});

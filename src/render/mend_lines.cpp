@@ -54,15 +54,14 @@ float LineMender::width() const {
 }
 
 void LineMender::mend_folds() {
-    std::vector<FoldWorker> workers;
+    FoldTeam fold_team;
     for (const std::unique_ptr<LineFinder>& finder : finders_) {
-        workers.push_back({finder->more_samples(), [&](Vec2f low, Vec2f high) {
-                               finder->enter({low.x, low.y, high.x, high.y});
-                           }});
+        fold_team.workers.push_back({finder->more_samples(), [&](Vec2f low, Vec2f high) {
+                                         finder->enter({low.x, low.y, high.x, high.y});
+                                     }});
     }
-    repairs_ =
-        ink::mend_folds(lines_, *squares_, edges_.viewpoint, spacing(), width(), workers,
-                        [&](std::size_t count, const auto& body) { team_.loop(count, body); });
+    fold_team.loop = [&](std::size_t count, const auto& body) { team_.loop(count, body); };
+    repairs_ = ink::mend_folds(lines_, *squares_, edges_.viewpoint, spacing(), width(), fold_team);
 }
 
 void LineMender::close_gaps() {
