@@ -209,8 +209,8 @@ TEST(Ink, OfFacesLeavesPixelsFarFromTheirEdgesBelowOutlines) {
     // A line between faces and an outline in front of it, at one place.
     tile.draw({.a = {0, 2}, .b = {8, 2}, .type = LineType::mesh, .t = 1.0F});
     tile.draw({.a = {0, 2}, .b = {8, 2}, .type = LineType::silhouette, .t = 1.0F});
-    const auto far = Lanes<float>::filled(kInfinity);
-    tile.draw_faces(0, 0, far, {}, {}, {}, Lanes<float>::filled(1.0F), mesh, 2.0F);
+    const NearestLines far{Lanes<float>::filled(kInfinity), {}, {}, {}};
+    tile.draw_faces(0, 0, far, Lanes<float>::filled(1.0F), mesh, 2.0F);
     tile.finish();
     ASSERT_FALSE(tile.uniform_color());
     EXPECT_EQ(tile.color()[0][tile.index(2, 2)], 0.0F);

@@ -17,11 +17,10 @@ namespace {
 constexpr int kProfileSteps = 512;
 
 INKTRACE_MULTIVERSION
-void cover(const Lanes<float>& distance, const Lanes<float>& nx, const Lanes<float>& ny, float half,
-           Lanes<float>& inks) {
+void cover(const NearestLines& lines, float half, Lanes<float>& inks) {
     for (int i = 0; i < kLanes; ++i) {
-        const float near = std::min(distance[i], 1e6F);
-        inks[i] = band_coverage(near, half, nx[i], ny[i]);
+        const float near = std::min(lines.distance[i], 1e6F);
+        inks[i] = band_coverage(near, half, lines.nx[i], lines.ny[i]);
     }
 }
 
@@ -150,24 +149,23 @@ void InkTile::start(Layer& layer) {
     empty_ = false;
 }
 
-void InkTile::draw_faces(int x, int y, const Lanes<float>& distance, const Lanes<float>& nx,
-                         const Lanes<float>& ny, const Lanes<float>& t,
-                         const Lanes<float>& strength, std::size_t style, float width) {
+void InkTile::draw_faces(int x, int y, const NearestLines& lines, const Lanes<float>& strength,
+                         std::size_t style, float width) {
     Layer& layer = layer_of(style);
     Lanes<float> inks;
     if (profile_.empty()) {
-        cover(distance, nx, ny, 0.5F * width, inks);
+        cover(lines, 0.5F * width, inks);
     } else {
         for (int i = 0; i < kLanes; ++i) {
-            const float place = std::min(distance[i] / (0.5F * width), 1.0F) * kProfileSteps;
+            const float place = std::min(lines.distance[i] / (0.5F * width), 1.0F) * kProfileSteps;
             const auto entry = static_cast<std::size_t>(place);
             inks[i] = profile_[entry] +
                       (profile_[entry + 1] - profile_[entry]) * (place - static_cast<float>(entry));
         }
     }
     const std::size_t k = index(x, y) / kLanes;
-    const bool any =
-        add_ink(inks, strength, t, layer.coverage[k], layer.t.empty() ? nullptr : &layer.t[k]);
+    const bool any = add_ink(inks, strength, lines.t, layer.coverage[k],
+                             layer.t.empty() ? nullptr : &layer.t[k]);
     if (any && touched_[k] == 0) touched_[k] = kTouched;
 }
 

@@ -63,6 +63,13 @@ inline InkStroke make_ink_stroke(const Segment& segment, std::size_t style) {
             segment.gap};
 }
 
+/// The line between faces that is nearest to each pixel of a block.
+struct NearestLines {
+    Lanes<float> distance;  ///< from the pixel's centre, pixels; infinite where there is none
+    Lanes<float> nx, ny;    ///< unit, across the line
+    Lanes<float> t;         ///< of the line's middle, distance along the ray
+};
+
 /// Ink on a rectangle of pixels, before it is mixed with the picture. Its planes go by blocks of
 /// 4 x 4 pixels, from the rectangle's upper left corner on, row by row.
 class InkTile {
@@ -78,11 +85,9 @@ class InkTile {
     void draw(const Segment& segment) {
         draw(make_ink_stroke(segment, static_cast<std::size_t>(segment.type)));
     }
-    /// Inks the block with pixel (x, y) of the tile with lines between faces: what each pixel gets
-    /// from the middle of a line at `distance` from its centre, pixels, infinite for none; (nx, ny)
-    /// is the unit normal of the line, `strength` the share of ink that it has.
-    void draw_faces(int x, int y, const Lanes<float>& distance, const Lanes<float>& nx,
-                    const Lanes<float>& ny, const Lanes<float>& t, const Lanes<float>& strength,
+    /// Inks the block with pixel (x, y) of the tile with lines between faces, `width` pixels wide;
+    /// `strength` is the share of ink that each has, in [0, 1].
+    void draw_faces(int x, int y, const NearestLines& lines, const Lanes<float>& strength,
                     std::size_t style, float width);
     /// The same where each pixel sees a face that is one triangle, and there are several inks:
     /// `codes` are BorderCodes of distances up to `reach`, `depths` those of the pixels.

@@ -164,8 +164,8 @@ void LineDrawer::ink_faces(const Tile& tile, Faces& faces) {
     for_each_face_block(tile, faces,
                         [&](int x, int y, const NearestEdges& edges, const Lanes<float>& strength,
                             std::size_t style, float width) {
-                            ink_.draw_faces(x - tile.x0, y - tile.y0, edges.distance, edges.nx,
-                                            edges.ny, edges.t, strength, style, width);
+                            ink_.draw_faces(x - tile.x0, y - tile.y0, edges, strength, style,
+                                            width);
                         });
 }
 

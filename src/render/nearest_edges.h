@@ -6,14 +6,12 @@
 
 #include "base/lanes.h"
 #include "base/vec.h"
+#include "lines/ink.h"
 
 namespace ink {
 
 /// For each of 4 x 4 pixels, the nearest edge of the face that it sees.
-struct NearestEdges {
-    Lanes<float> distance;  ///< from the pixel's centre, pixels; infinite where there is none
-    Lanes<float> nx, ny;    ///< unit, across the edge
-    Lanes<float> t;         ///< of the edge's middle, distance along the ray
+struct NearestEdges : NearestLines {
     Lanes<std::uint32_t> triangle;  ///< that the pixel sees: see FaceMap
 };
 
