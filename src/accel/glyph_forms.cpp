@@ -16,18 +16,22 @@ namespace ink::HWY_NAMESPACE {
 
 using DoubleMask = hn::Mask<Doubles>;
 
-/// The cube that holds a unit shape, or the square in its middle, on the screen. What has no form
-/// has no bounds either: of no numbers, they would spoil those of its cluster.
-HWY_INLINE void bound_glyphs(const Basis& basis, bool flat, const Triple& c, const Triple& x,
-                             const Triple& y, const Triple& z, DoubleMask has_form, int i,
-                             ScreenPacket& packet) {
+/// The cube that holds a unit shape, in camera space: its middle, and from there to its faces.
+struct Cube {
+    Triple middle, x, y, z;
+};
+
+/// The cube, or the square in its middle, on the screen. What has no form has no bounds either: of
+/// no numbers, they would spoil those of its cluster.
+HWY_INLINE void bound_glyphs(const Basis& basis, const Cube& cube, bool flat, DoubleMask has_form,
+                             int i, BoundsPacket& packet) {
     const Double infinity = number(std::numeric_limits<double>::infinity());
     CornerBounds bounds = CornerBounds::none();
     Double width = infinity;  // of a pixel, at the corner where it is least
     for (int corner = 0; corner < (flat ? 4 : 8); ++corner) {
-        Triple p = (corner & 1) != 0 ? sum(c, x) : difference(c, x);
-        p = (corner & 2) != 0 ? sum(p, y) : difference(p, y);
-        if (!flat) p = (corner & 4) != 0 ? sum(p, z) : difference(p, z);
+        Triple p = (corner & 1) != 0 ? sum(cube.middle, cube.x) : difference(cube.middle, cube.x);
+        p = (corner & 2) != 0 ? sum(p, cube.y) : difference(p, cube.y);
+        if (!flat) p = (corner & 4) != 0 ? sum(p, cube.z) : difference(p, cube.z);
         const Double pixel = pixel_at(basis, p.z);
         bounds.add(p, pixel);
         width = hn::Min(width, pixel);
@@ -44,7 +48,7 @@ HWY_INLINE void bound_glyphs(const Basis& basis, bool flat, const Triple& c, con
     bounds.right = hn::IfThenElse(has_form, bounds.right, none.right);
     bounds.bottom = hn::IfThenElse(has_form, bounds.bottom, none.bottom);
     bounds.depth = hn::IfThenElse(has_form, bounds.depth, none.depth);
-    bounds.put(i, packet.bounds);
+    bounds.put(i, packet);
 }
 
 void lay_glyphs(Basis basis, const GlyphLanes& glyphs, ScreenPacket& packet) {
@@ -84,8 +88,8 @@ void lay_glyphs(Basis basis, const GlyphLanes& glyphs, ScreenPacket& packet) {
             finite = hn::And(finite, hn::Lt(size, number(1e30)));
         }
         put(hn::Div(number(basis.slope_step), pixel), form[12], i);
-        bound_glyphs(basis, flat, c, turned(basis, x), turned(basis, y), turned(basis, z), finite,
-                     i, packet);
+        const Cube cube{c, turned(basis, x), turned(basis, y), turned(basis, z)};
+        bound_glyphs(basis, cube, flat, finite, i, packet.bounds);
     }
     lay_side_by_side(form, 16, packet.forms);
     lay_side_by_side(hit, 12, packet.hit);

@@ -129,11 +129,15 @@ void BallLocator::take_crossings(const Batch& batch, int used, std::vector<Cross
         if (first == second && found.kind[lane] == kSeam) {
             const Prediction prediction{Prediction::Kind::seam, found.at[lane], found.t[lane],
                                         found.squared_radius[lane]};
-            if (cross_as_predicted(
-                    viewpoint_, settings_, prediction, {lanes.ax[lane], lanes.ay[lane]},
-                    {lanes.bx[lane], lanes.by[lane]},
-                    {first, lanes.first.t[lane], ball_of(lanes.first, lane)},
-                    {second, lanes.second.t[lane], ball_of(lanes.second, lane)}, crossing)) {
+            const PredictedSide from{{lanes.ax[lane], lanes.ay[lane]},
+                                     first,
+                                     lanes.first.t[lane],
+                                     ball_of(lanes.first, lane)};
+            const PredictedSide to{{lanes.bx[lane], lanes.by[lane]},
+                                   second,
+                                   lanes.second.t[lane],
+                                   ball_of(lanes.second, lane)};
+            if (cross_as_predicted(viewpoint_, settings_, prediction, from, to, crossing)) {
                 crossings.push_back(crossing);
             }
             continue;

@@ -144,8 +144,9 @@ bool Locator::classify(const Interval& interval, Crossing& crossing) const {
     crossing.second = b.id;
     crossing.strength = 1.0F;
     if (interval.state == State::foreseen) {
-        return cross_as_predicted(viewpoint_, settings_, *interval.prediction, interval.a,
-                                  interval.b, {a.id, a.t, a.ball}, {b.id, b.t, b.ball}, crossing);
+        return cross_as_predicted(viewpoint_, settings_, *interval.prediction,
+                                  {interval.a, a.id, a.t, a.ball}, {interval.b, b.id, b.t, b.ball},
+                                  crossing);
     }
 
     crossing.point = (interval.a + interval.b) * 0.5F;

@@ -95,8 +95,9 @@ struct Neighbours {
 /// Finds the suspects among the edges that hang on a block's points.
 HWY_INLINE void compare_block(const BlockView& own, const BlockView& right, const BlockView& below,
                               Neighbours has, const DetectSettings& settings,
-                              const Thresholds& thresholds, SuspectBits& across,
-                              SuspectBits& along) {
+                              const Thresholds& thresholds, SuspectBlock& found) {
+    SuspectBits& across = found.right;
+    SuspectBits& along = found.down;
     std::uint32_t hit = 0;
     std::uint32_t shared_right = 0;
     std::uint32_t shared_below = 0;
@@ -162,7 +163,7 @@ std::size_t compare_blocks(const SampleBlocks& blocks, const DetectSettings& set
             compare_block(BlockView(blocks, own), BlockView(blocks, right),
                           BlockView(blocks, below),
                           {points_within(columns - 1, rows), points_within(columns, rows - 1)},
-                          settings, thresholds, found->right, found->down);
+                          settings, thresholds, *found);
             if ((found->right.any() | found->down.any()) != 0) ++found;
         }
     }

@@ -74,8 +74,9 @@ float crease_strength(const LocateSettings& settings, float angle);
 /// Of a crease, as the chord on the unit sphere.
 float least_turn(const LocateSettings& settings);
 
-/// One side of a predicted crossing.
+/// One side of a predicted crossing: what the edge's end saw there.
 struct PredictedSide {
+    Vec2f end;  ///< on the screen, pixels
     GeometryId id = kBackground;
     float t = 0.0F;  ///< as in Sample
     Ball ball{};
@@ -95,14 +96,15 @@ inline float checked_place(const LocateSettings& settings, const Prediction& p) 
     return p.at;
 }
 
-/// What a prediction says needs no measuring: a contour hides, a seam joins.
+/// Fills in all of a crossing but its edge; false where there is no line. What a prediction says
+/// needs no measuring: a contour hides, a seam joins.
 inline bool cross_as_predicted(const Viewpoint& viewpoint, const LocateSettings& settings,
-                               const Prediction& p, Vec2f a, Vec2f b, const PredictedSide& first,
+                               const Prediction& p, const PredictedSide& first,
                                const PredictedSide& second, Crossing& crossing) {
     using Kind = Prediction::Kind;
     const bool first_in_front =
         p.kind == Kind::first_contour || (p.kind != Kind::second_contour && first.t <= second.t);
-    crossing.point = a + (b - a) * p.at;
+    crossing.point = first.end + (second.end - first.end) * p.at;
     crossing.first = first.id;
     crossing.second = second.id;
     crossing.nearer = first_in_front ? first.id : second.id;
