@@ -37,7 +37,7 @@ Settings fewer_pixels(const Settings& settings, const Enlargement& enlargement) 
 
 /// Lines of the small picture become strokes of the large one, in the tiles in which its
 /// `LineDrawer` looks for them.
-void enlarge_lines(const FoundLines& found, const Enlargement& enlargement, const Edges& large,
+void enlarge_lines(const FoundLines& found, const Enlargement& enlargement, const EdgesPlan& large,
                    std::vector<TileLines>& tiles) {
     std::vector<InkStroke> strokes;
     std::vector<std::size_t> places;  // tiles
@@ -85,8 +85,8 @@ SideWork enlarging(const PixelEnlarger& enlarger, FaceTiling* faces, Film& large
 /// others enlarge pixels or sharpen them along the lines. Ridges are found while lines are mended.
 RenderStats render_fewer_rays(const Pipeline& few, const Pipeline& full,
                               const Enlargement& enlargement, const RenderControl& control) {
-    const Edges small(few);
-    const Edges large(full);
+    const EdgesPlan small(few);
+    const EdgesPlan large(full);
     const int threads = few.settings.threads > 0 ? few.settings.threads : hardware_threads();
     const PixelEnlarger enlarger(enlargement, few.film.display());
     const std::size_t tiles = small.search_tiles.size();

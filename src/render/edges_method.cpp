@@ -11,7 +11,7 @@ namespace ink {
 namespace {
 
 /// Hands out what the drawing needs of the segments of all tiles.
-void keep_lines(const Edges& edges, const std::vector<TileLines>& found,
+void keep_lines(const EdgesPlan& edges, const std::vector<TileLines>& found,
                 const std::vector<std::vector<Segment>>& toned,
                 const std::vector<std::vector<Segment>>& hidden, Drawing& drawing) {
     drawing.spacing = 1.0F / static_cast<float>(edges.q);
@@ -62,7 +62,8 @@ void keep_lines(const Edges& edges, const std::vector<TileLines>& found,
 
 }  // namespace
 
-void draw_lines(const Edges& edges, const FoundLines& found, WorkLoop& loop, RenderStats& stats) {
+void draw_lines(const EdgesPlan& edges, const FoundLines& found, WorkLoop& loop,
+                RenderStats& stats) {
     std::optional<ScreenVertices> vertices;
     if (found.faces) {
         const Pipeline& pipeline = edges.pipeline;
@@ -85,7 +86,7 @@ void draw_lines(const Edges& edges, const FoundLines& found, WorkLoop& loop, Ren
 }
 
 RenderStats render_edges(const Pipeline& pipeline, const RenderControl& control) {
-    const Edges edges(pipeline);
+    const EdgesPlan edges(pipeline);
     const int threads =
         pipeline.settings.threads > 0 ? pipeline.settings.threads : hardware_threads();
     WorkLoop loop(threads, control, edges.draw_tiles.size());

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "render/edges.h"
+#include "render/edges_plan.h"
 #include "render/line_search.h"
 #include "render/pipeline.h"
 #include "render/work_loop.h"
@@ -8,6 +8,7 @@
 namespace ink {
 
 /// Draws what was found on the film.
-void draw_lines(const Edges& edges, const FoundLines& found, WorkLoop& loop, RenderStats& stats);
+void draw_lines(const EdgesPlan& edges, const FoundLines& found, WorkLoop& loop,
+                RenderStats& stats);
 
 }  // namespace ink

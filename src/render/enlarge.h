@@ -9,7 +9,7 @@
 #include "base/lanes.h"
 #include "base/vec.h"
 #include "film/film.h"
-#include "render/edges.h"
+#include "render/edges_plan.h"
 #include "render/mix_corners.h"
 #include "render/tiles.h"
 

@@ -32,7 +32,7 @@ float along(const Crossing& crossing, const SuspectEdge& edge, float per_pixel) 
 
 }  // namespace
 
-HiddenLineFinder::HiddenLineFinder(const Edges& edges) : edges_(edges) {
+HiddenLineFinder::HiddenLineFinder(const EdgesPlan& edges) : edges_(edges) {
     for (const auto& behind : edges.behind) {
         layers_.push_back(std::make_unique<LineFinder>(edges, *behind));
     }
@@ -88,7 +88,7 @@ RenderStats HiddenLineFinder::stats() const {
     return total;
 }
 
-std::vector<Segment> hidden_strokes(const Edges& edges, std::span<const Segment> lines) {
+std::vector<Segment> hidden_strokes(const EdgesPlan& edges, std::span<const Segment> lines) {
     const float spacing = 1.0F / static_cast<float>(edges.q);
     const Settings& settings = edges.pipeline.settings;
     const ChainGraph graph = chain_lines(lines, spacing, settings.threads);

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "lines/segment.h"
-#include "render/edges.h"
+#include "render/edges_plan.h"
 #include "render/line_finder.h"
 #include "render/tiles.h"
 
@@ -16,7 +16,7 @@ namespace ink {
 /// Finds the lines on surfaces behind others, one tile after another.
 class HiddenLineFinder {
   public:
-    explicit HiddenLineFinder(const Edges& edges);
+    explicit HiddenLineFinder(const EdgesPlan& edges);
 
     /// Searches, layer by layer, the tile that `front` has just searched. Leaves out what lies
     /// under lines of the layers before: what an outline uncovers changes every layer behind it.
@@ -32,13 +32,13 @@ class HiddenLineFinder {
     void keep_places(const LineFinder& layer);
     bool is_known(Vec2f point) const;
 
-    const Edges& edges_;
+    const EdgesPlan& edges_;
     std::vector<std::unique_ptr<LineFinder>> layers_;  ///< behind the first one
     std::vector<Place> places_;                        ///< of the layers before, in order
     std::vector<std::uint64_t> known_;                 ///< crossings at such places, by their bits
 };
 
 /// The strokes in which hidden lines are drawn on pixels.
-std::vector<Segment> hidden_strokes(const Edges& edges, std::span<const Segment> lines);
+std::vector<Segment> hidden_strokes(const EdgesPlan& edges, std::span<const Segment> lines);
 
 }  // namespace ink

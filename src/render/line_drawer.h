@@ -10,7 +10,7 @@
 #include "lines/ink.h"
 #include "lines/line_planes.h"
 #include "render/border_map.h"
-#include "render/edges.h"
+#include "render/edges_plan.h"
 #include "render/face_edges.h"
 #include "render/face_tiling.h"
 #include "render/tiles.h"
@@ -22,7 +22,7 @@ class LineDrawer {
   public:
     /// `faces` and `vertices`, or `borders`, or `tiling`, are what lines between faces are drawn
     /// from; null if there are none.
-    LineDrawer(const Edges& edges, const LineThinning& thinning, const FaceMap* faces,
+    LineDrawer(const EdgesPlan& edges, const LineThinning& thinning, const FaceMap* faces,
                const ScreenVertices* vertices, const BorderMap* borders, const FaceTiling* tiling)
         : edges_(edges),
           thinning_(thinning),
@@ -67,7 +67,7 @@ class LineDrawer {
     void write_planes(const Tile& tile, const std::vector<TileLines>& found);
     void add_face_planes(const Tile& tile);
 
-    const Edges& edges_;
+    const EdgesPlan& edges_;
     const LineThinning& thinning_;
     InkTile ink_;
     const BorderMap* borders_;

@@ -15,7 +15,7 @@
 #include "lines/segment.h"
 #include "lines/tones.h"
 #include "render/border_map.h"
-#include "render/edges.h"
+#include "render/edges_plan.h"
 #include "render/face_density.h"
 #include "render/face_map.h"
 #include "render/face_tiling.h"
@@ -42,12 +42,12 @@ struct FaceMaps {
 class LineFinder {
   public:
     /// `ridges`: what keeps the samples that ridges are found from; null if there are none.
-    explicit LineFinder(const Edges& edges, const FaceMaps& maps = {},
+    explicit LineFinder(const EdgesPlan& edges, const FaceMaps& maps = {},
                         RidgeSearch* ridges = nullptr)
         : LineFinder(edges, *edges.pipeline.frame, true, maps, ridges) {}
 
     /// On other surfaces than the nearest ones: what lies behind them is not shaded.
-    LineFinder(const Edges& edges, const FrameTracer& behind)
+    LineFinder(const EdgesPlan& edges, const FrameTracer& behind)
         : LineFinder(edges, behind, false, {}, nullptr) {}
 
     /// Traces the lattice, detects, locates and connects; shades the tile's pixels on the way.
@@ -85,7 +85,7 @@ class LineFinder {
     }
 
   private:
-    LineFinder(const Edges& edges, const FrameTracer& frame, bool front, const FaceMaps& maps,
+    LineFinder(const EdgesPlan& edges, const FrameTracer& frame, bool front, const FaceMaps& maps,
                RidgeSearch* ridges)
         : edges_(edges),
           front_(front),
@@ -201,7 +201,7 @@ class LineFinder {
 
     static constexpr std::uint8_t kCrossedRight = 1, kCrossedDown = 2, kMarked = 4;
 
-    const Edges& edges_;
+    const EdgesPlan& edges_;
     bool front_;
     /// Whether lines depend on IDs alone: the grid keeps nothing else.
     bool ids_only_;

@@ -15,7 +15,7 @@ struct LineMasks {
     LineMask near;      ///< `radius` pixels farther away
 };
 
-LineMasks masks_of(const Edges& edges, const std::vector<TileLines>& found, float radius) {
+LineMasks masks_of(const EdgesPlan& edges, const std::vector<TileLines>& found, float radius) {
     LineMasks masks{LineMask(edges.search_area()), LineMask(edges.search_area())};
     const auto mark = [&](Vec2f a, Vec2f b, std::size_t style) {
         constexpr float kBetween = 0.5F;  // what the eye does not tell from none, pixels
@@ -39,7 +39,7 @@ LineMasks masks_of(const Edges& edges, const std::vector<TileLines>& found, floa
 }
 
 /// False only if the tile's lattice sees nothing.
-bool may_see(const Edges& edges, const Tile& tile) {
+bool may_see(const EdgesPlan& edges, const Tile& tile) {
     // As far as tiles trace beyond their borders, and no less.
     return edges.pipeline.frame->may_see({static_cast<float>(tile.x0), static_cast<float>(tile.y0),
                                           static_cast<float>(tile.x1 + kBlockSide),
@@ -48,7 +48,7 @@ bool may_see(const Edges& edges, const Tile& tile) {
 
 /// Puts a line that was found in the whole picture where tiles that draw look for it; those of a
 /// draft are enlarged first.
-void keep(const Edges& edges, const Segment& line, FoundLines& found) {
+void keep(const EdgesPlan& edges, const Segment& line, FoundLines& found) {
     if (edges.pipeline.lines.enlargement != nullptr) {
         found.of_no_tile.push_back(line);
         return;
@@ -59,7 +59,7 @@ void keep(const Edges& edges, const Segment& line, FoundLines& found) {
 }
 
 /// From what all workers have counted, and the ridges.
-LineThinning thinning_of(const Edges& edges,
+LineThinning thinning_of(const EdgesPlan& edges,
                          const std::vector<std::unique_ptr<LineFinder>>& finders,
                          const LineDensity& ridges) {
     LineThinning thinning{ridges, ridges, static_cast<float>(edges.pipeline.settings.line_density)};
@@ -80,7 +80,7 @@ LineThinning thinning_of(const Edges& edges,
 
 }  // namespace
 
-LineSearch::LineSearch(const Edges& edges, WorkLoop& loop)
+LineSearch::LineSearch(const EdgesPlan& edges, WorkLoop& loop)
     : edges_(edges),
       loop_(loop),
       finders_(static_cast<std::size_t>(loop.threads())),
@@ -235,7 +235,7 @@ RenderStats LineSearch::stats() const {
     return total;
 }
 
-void add_hidden_strokes(const Edges& edges, FoundLines& found) {
+void add_hidden_strokes(const EdgesPlan& edges, FoundLines& found) {
     if (!edges.draw_lines || edges.behind.empty()) return;
     std::vector<Segment> lines;
     for (const std::vector<Segment>& tile : found.hidden) {

@@ -9,7 +9,7 @@
 #include "lines/density.h"
 #include "lines/segment.h"
 #include "render/border_map.h"
-#include "render/edges.h"
+#include "render/edges_plan.h"
 #include "render/face_map.h"
 #include "render/face_tiling.h"
 #include "render/hidden_lines.h"
@@ -45,7 +45,7 @@ struct SideWork {
 class LineSearch {
   public:
     /// Keeps references. The loop learns how many items of work to expect.
-    LineSearch(const Edges& edges, WorkLoop& loop);
+    LineSearch(const EdgesPlan& edges, WorkLoop& loop);
 
     /// Tile by tile. After it, a draft's pixels are what they will be unless their shading is
     /// smoothed along lines.
@@ -68,7 +68,7 @@ class LineSearch {
     void finish_fringe(std::size_t tile) const;
     LineDensity take_ridges();
 
-    const Edges& edges_;
+    const EdgesPlan& edges_;
     WorkLoop& loop_;
     FoundLines found_;
     /// Tiles that may see anything, and others, which are put off until one thread mends lines.
@@ -82,6 +82,6 @@ class LineSearch {
 
 /// Joins the hidden lines of the whole picture, so that dashes do not start anew in every tile, and
 /// puts their strokes among the others.
-void add_hidden_strokes(const Edges& edges, FoundLines& found);
+void add_hidden_strokes(const EdgesPlan& edges, FoundLines& found);
 
 }  // namespace ink

@@ -108,7 +108,7 @@ void LineMender::repair_toned() {
 namespace {
 
 /// Makes a tile's strokes anew from its segments.
-void make_strokes(const Edges& edges, TileLines& tile) {
+void make_strokes(const EdgesPlan& edges, TileLines& tile) {
     tile.strokes.clear();
     tile.inner = 0;
     for (const Segment& segment : tile.segments) {

@@ -8,7 +8,7 @@
 #include "base/team.h"
 #include "lines/folds.h"
 #include "lines/segment_squares.h"
-#include "render/edges.h"
+#include "render/edges_plan.h"
 #include "render/line_finder.h"
 
 namespace ink {
@@ -18,7 +18,7 @@ namespace ink {
 class LineMender {
   public:
     /// One finder a thread, which have ended their search, for rays; they count these.
-    LineMender(const Edges& edges, const std::vector<std::unique_ptr<LineFinder>>& finders,
+    LineMender(const EdgesPlan& edges, const std::vector<std::unique_ptr<LineFinder>>& finders,
                std::vector<TileLines>& found, std::vector<std::vector<Segment>>& toned, Team& team)
         : edges_(edges), finders_(finders), found_(found), toned_(toned), team_(team) {}
 
@@ -43,7 +43,7 @@ class LineMender {
     void repair_toned();
     void change();
 
-    const Edges& edges_;
+    const EdgesPlan& edges_;
     const std::vector<std::unique_ptr<LineFinder>>& finders_;
     std::vector<TileLines>& found_;
     std::vector<std::vector<Segment>>& toned_;

@@ -34,7 +34,7 @@ std::uint32_t edge_key(const SuspectEdge& edge) {
 
 }  // namespace
 
-SpecularSearch::SpecularSearch(const Edges& edges)
+SpecularSearch::SpecularSearch(const EdgesPlan& edges)
     : edges_(edges),
       sampler_(*edges.pipeline.frame, edges.pipeline.camera),
       paths_(edges.pipeline),

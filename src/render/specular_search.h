@@ -10,7 +10,7 @@
 #include "lines/detect.h"
 #include "lines/locate.h"
 #include "lines/segment.h"
-#include "render/edges.h"
+#include "render/edges_plan.h"
 #include "render/path_table.h"
 #include "render/specular_paths.h"
 #include "sampling/sampler.h"
@@ -33,7 +33,7 @@ struct LatticeHits {
 /// are, in the plane of the picture.
 class SpecularSearch {
   public:
-    explicit SpecularSearch(const Edges& edges);
+    explicit SpecularSearch(const EdgesPlan& edges);
 
     /// Follows the paths of a tile's lattice, of the extent of `lattice`, and mixes what they see
     /// into the colours of its blocks.
@@ -64,7 +64,7 @@ class SpecularSearch {
     void find_repeated();
     void remember(std::span<const SuspectEdge> suspects, std::span<const Crossing> crossings);
 
-    const Edges& edges_;
+    const EdgesPlan& edges_;
     Sampler sampler_;
     SpecularPaths paths_;
     PathTable table_;

@@ -30,9 +30,10 @@ struct TileLines {
     Fringe fringe;
 };
 
-/// The method's fixed parts, shared by all tiles.
-struct Edges {
-    explicit Edges(const Pipeline& shared);
+/// What method "edges" settles before it goes over the tiles, which share it: what is searched and
+/// drawn, in which styles, by which thresholds and on which tiles.
+struct EdgesPlan {
+    explicit EdgesPlan(const Pipeline& shared);
 
     /// Index into the ink's styles, of which those of hidden lines come last.
     std::size_t style_of(const Segment& segment) const {

@@ -1,4 +1,4 @@
-#include "render/edges.h"
+#include "render/edges_plan.h"
 
 #include <fmt/format.h>
 
@@ -99,7 +99,7 @@ int spare(int margin, int side) { return std::min(2 * margin, side / 4); }
 
 }  // namespace
 
-Edges::Edges(const Pipeline& shared)
+EdgesPlan::EdgesPlan(const Pipeline& shared)
     : pipeline(shared),
       q(shared.settings.lattice_points()),
       surfaces(shared.scene, shared.settings.shading.normals),
@@ -170,7 +170,7 @@ Edges::Edges(const Pipeline& shared)
 }
 
 /// The outline lies between a pixel and what it does not see, and so is nearer to the pixel.
-bool Edges::outlines_cover_faces() const {
+bool EdgesPlan::outlines_cover_faces() const {
     const bool planes = pipeline.aovs && pipeline.aovs->wants_line_planes();
     if (styles_by_object || tells_inner || planes) return false;
     const auto style = [&](LineType type) { return ink.styles[static_cast<std::size_t>(type)]; };
@@ -187,7 +187,7 @@ bool Edges::outlines_cover_faces() const {
 
 /// Along open edges there is a line in any case, so that it does not matter that these are borders
 /// as well.
-bool Edges::draws_borders() const {
+bool EdgesPlan::draws_borders() const {
     return wants_faces() && q == 1 && pipeline.frame->measures_borders() &&
            outlines_cover_faces() && !cues_depth() && !pipeline.lines.segments &&
            ink.profile.kind == Metric::Kind::solid &&
@@ -197,7 +197,7 @@ bool Edges::draws_borders() const {
            });
 }
 
-std::size_t Edges::find_style(const Segment& segment) const {
+std::size_t EdgesPlan::find_style(const Segment& segment) const {
     const auto type = static_cast<std::size_t>(segment.type);
     const bool by_object = styles_by_object && segment.owner != kBackground;
     const std::size_t object = by_object ? pipeline.ids.object_of(segment.owner) : 0;
@@ -209,22 +209,22 @@ std::size_t Edges::find_style(const Segment& segment) const {
     return (is_inner(segment) ? alike : 0) + (level * objects + object) * kLineTypes + type;
 }
 
-bool Edges::is_inner(const Segment& segment) const {
+bool EdgesPlan::is_inner(const Segment& segment) const {
     return tells_inner && segment.left != kBackground && segment.right != kBackground &&
            pipeline.ids.of_one_whole(segment.left, segment.right);
 }
 
-float Edges::depth_at(Vec2f point, float t) const {
+float EdgesPlan::depth_at(Vec2f point, float t) const {
     const Vec3d from = viewpoint.origin(point);
     return pipeline.shader.depth_cue()(
         to_float(from + normalize(viewpoint.direction(point)) * static_cast<double>(t)));
 }
 
-bool Edges::cues_depth() const {
+bool EdgesPlan::cues_depth() const {
     return pipeline.settings.line_fade > 0.0 || pipeline.settings.line_taper > 0.0;
 }
 
-void Edges::attenuate(Segment& segment) const {
+void EdgesPlan::attenuate(Segment& segment) const {
     const Vec2f middle = (segment.a + segment.b) * 0.5F;
     if (cues_depth()) {
         const float depth = depth_at(middle, segment.t);
@@ -237,7 +237,7 @@ void Edges::attenuate(Segment& segment) const {
     }
 }
 
-std::size_t Edges::search_tile_at(Vec2f point) const {
+std::size_t EdgesPlan::search_tile_at(Vec2f point) const {
     const auto tile = [&](float at, int tiles) {
         return std::clamp((static_cast<int>(std::floor(at)) + margin) / pipeline.settings.tile, 0,
                           tiles - 1);
@@ -246,7 +246,7 @@ std::size_t Edges::search_tile_at(Vec2f point) const {
            static_cast<std::size_t>(tile(point.x, tiles_across));
 }
 
-std::size_t Edges::style_of(LineType type, std::uint32_t object) const {
+std::size_t EdgesPlan::style_of(LineType type, std::uint32_t object) const {
     return (styles_by_object ? object * kLineTypes : 0U) + static_cast<std::size_t>(type);
 }
 
