@@ -334,6 +334,22 @@ TEST(CrumbOfAFold, IsARingThatItsOwnLineFills) {
     }
 }
 
+/// A fold leaves an outline and comes back to it, two pixels away from it at most.
+TEST(CrumbOfAFold, IsABumpOnAnOutlineThatTheOutlinesStrokeCovers) {
+    const std::vector<Segment> outline =
+        straight({10.5F, 20.0F}, {60.5F, 20.0F}, LineType::silhouette);
+    const std::vector<Segment> bump = fold({20.5F, 20.0F}, {26.5F, 22.0F}) +
+                                      fold({26.5F, 22.0F}, {40.5F, 22.0F}) +
+                                      fold({40.5F, 22.0F}, {46.5F, 20.0F});
+    const auto dropped = [&](const std::vector<Segment>& lines, float width) {
+        return mend_folds(lines, above_plane(), 1.0F, width, sample_plane).crumbs.size();
+    };
+    EXPECT_EQ(dropped(outline + bump, 4.5F), bump.size());
+    EXPECT_EQ(dropped(outline + bump, 3.5F), 0U);
+    // What goes on from it is no bump.
+    EXPECT_EQ(dropped(outline + bump + fold({40.5F, 22.0F}, {40.5F, 90.0F}), 4.5F), 0U);
+}
+
 /// A fold ends beside a short one that comes from an outline and goes on past its end.
 TEST(CrumbOfAFold, StaysAsFarAsAnotherFoldGoesOnAlongIt) {
     std::vector<Segment> lines;

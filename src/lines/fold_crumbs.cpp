@@ -23,7 +23,11 @@ std::vector<std::size_t> FoldCrumbs::find(const FoldEndings& endings,
     for (const std::uint32_t k : endings.loose) group_of(k).loose = true;
     for (const std::uint32_t k : endings.free) group_of(k).free = true;
     for (const std::uint32_t k : endings.stubs) group_of(k).stub = true;
-    for (const std::uint32_t k : roots_) group_of(k).crumb = is_dot(k);
+    find_bumps();
+    for (const std::uint32_t k : roots_) {
+        Group& group = group_of(k);
+        group.crumb = is_dot(k) || (!group.loose && !group.leaves);
+    }
     unite_followers(endings.followers);
     std::erase_if(roots_, [&](std::uint32_t k) { return graph_.root(k) != k; });
     do {
@@ -93,6 +97,27 @@ bool FoldCrumbs::is_dot(std::uint32_t root) const {
         end->at_b = !end->at_b;
     }
     return false;
+}
+
+/// A fold that leaves an outline and comes back within half a stroke adds nothing but a bump to it.
+void FoldCrumbs::find_bumps() {
+    for (const std::uint32_t k : graph_.folds()) {
+        Group& group = group_of(k);
+        if (group.loose || group.leaves) continue;
+        group.leaves = !runs_on_outline(lines_[k].a) || !runs_on_outline(lines_[k].b);
+    }
+}
+
+/// Whether the stroke of an outline covers a point.
+bool FoldCrumbs::runs_on_outline(Vec2f point) const {
+    const float half = 0.5F * width_;
+    bool covered = false;
+    squares_.near(point, half + spacing_, [&](std::uint32_t k) {
+        const LineType type = lines_[k].type;
+        covered = covered || ((type == LineType::silhouette || type == LineType::boundary) &&
+                              length(plane::nearest_on(lines_[k], point) - point) <= half);
+    });
+    return covered;
 }
 
 bool FoldCrumbs::is_short(const Group& group) const {

@@ -8,6 +8,7 @@
 #include "lines/fold_graph.h"
 #include "lines/fold_probe.h"
 #include "lines/folds.h"
+#include "lines/segment_squares.h"
 
 namespace ink {
 
@@ -29,12 +30,16 @@ struct FoldEndings {
 /// Groups of self-occlusions that are too short and shallow to mean anything.
 class FoldCrumbs {
   public:
-    FoldCrumbs(std::span<const Segment> lines, FoldGraph& graph, const FoldProbe& probe,
-               const FoldLoop& loop, float width, const FoldSettings& settings)
+    /// `squares`: those of `lines`.
+    FoldCrumbs(std::span<const Segment> lines, const plane::SegmentSquares& squares,
+               FoldGraph& graph, const FoldProbe& probe, const FoldLoop& loop, float spacing,
+               float width, const FoldSettings& settings)
         : lines_(lines),
+          squares_(squares),
           graph_(graph),
           probe_(probe),
           loop_(loop),
+          spacing_(spacing),
           width_(width),
           settings_(settings),
           groups_(lines.size()) {}
@@ -57,6 +62,7 @@ class FoldCrumbs {
         bool free = false;        ///< or still does
         bool attached = false;    ///< ends on a line
         bool stub = false;        ///< ends on one whose end it does not share
+        bool leaves = false;      ///< some of it is not covered by the outlines beside it
         bool crumb = false;
     };
 
@@ -65,6 +71,8 @@ class FoldCrumbs {
     void attach(std::span<const FoldHang> hangs);
     bool judge();
     bool is_dot(std::uint32_t root) const;
+    void find_bumps();
+    bool runs_on_outline(Vec2f point) const;
     bool is_short(const Group& group) const;
     float least_length(const Group& group) const;
     bool may_be_shallow(const Group& group) const;
@@ -73,10 +81,11 @@ class FoldCrumbs {
     void measure_all(std::vector<std::uint32_t>& folds);
 
     std::span<const Segment> lines_;
+    const plane::SegmentSquares& squares_;
     FoldGraph& graph_;
     const FoldProbe& probe_;
     const FoldLoop& loop_;
-    float width_;
+    float spacing_, width_;
     const FoldSettings& settings_;
     std::vector<Group> groups_;
     std::vector<std::uint32_t> roots_;  ///< of the groups

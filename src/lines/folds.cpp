@@ -439,7 +439,7 @@ class FoldMender {
             endings_.loose.push_back(end.fold);
             if (end.reached == kNone) endings_.free.push_back(end.fold);
         }
-        FoldCrumbs crumbs(lines_, graph_, probe_, loop_, width_, settings_);
+        FoldCrumbs crumbs(lines_, squares_, graph_, probe_, loop_, spacing_, width_, settings_);
         repairs_.crumbs = crumbs.find(endings_, repairs_.bridges, owners_);
         std::erase_if(repairs_.crumbs, [&](std::size_t k) {
             return carried_[k] != kNone && !crumbs.has(carried_[k]);
