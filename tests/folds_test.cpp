@@ -334,6 +334,35 @@ TEST(CrumbOfAFold, IsARingThatItsOwnLineFills) {
     }
 }
 
+TEST(BrokenFold, OfAThinLineIsMendedAsOneOfTheLeastWidth) {
+    const World world{{broken_fold(0.1, 40.0, {{5, 13}, {27, 43}})}};
+    const std::vector<Segment> found = search(world, 1).segments;
+    const auto bridged = [&](float width, float least_width) {
+        const auto sample = [&](std::span<const Vec2f> points, std::span<Sample> out) {
+            std::ranges::transform(points, out.begin(), world);
+        };
+        return !mend_folds(found, viewpoint_of(world.unit), 1.0F, width, sample,
+                           {.least_width = least_width})
+                    .bridges.empty();
+    };
+    EXPECT_TRUE(bridged(2.0F, 0.0F));
+    EXPECT_FALSE(bridged(1.0F, 0.0F));
+    EXPECT_TRUE(bridged(1.0F, 2.0F));
+}
+
+/// Whether a line doubles another one depends on what is drawn.
+TEST(DoubledFold, OfAThinLineStaysWhateverTheLeastWidth) {
+    const std::vector<Segment> folds =
+        fold({10.5F, 20.0F}, {70.5F, 20.0F}) + fold({20.5F, 22.0F}, {60.5F, 22.0F});
+    const auto dropped = [&](float width, float least_width) {
+        return mend_folds(folds, viewpoint_of(1.0), 1.0F, width, sample_plane,
+                          {.least_width = least_width, .crumb_area = 0.0F, .stub_area = 0.0F})
+            .crumbs.size();
+    };
+    EXPECT_GT(dropped(2.0F, 0.0F), 30U);
+    EXPECT_EQ(dropped(1.0F, 2.0F), 0U);
+}
+
 /// A fold leaves an outline and comes back to it, two pixels away from it at most.
 TEST(CrumbOfAFold, IsABumpOnAnOutlineThatTheOutlinesStrokeCovers) {
     const std::vector<Segment> outline =
@@ -342,7 +371,7 @@ TEST(CrumbOfAFold, IsABumpOnAnOutlineThatTheOutlinesStrokeCovers) {
                                       fold({26.5F, 22.0F}, {40.5F, 22.0F}) +
                                       fold({40.5F, 22.0F}, {46.5F, 20.0F});
     const auto dropped = [&](const std::vector<Segment>& lines, float width) {
-        return mend_folds(lines, above_plane(), 1.0F, width, sample_plane).crumbs.size();
+        return mend_folds(lines, viewpoint_of(1.0), 1.0F, width, sample_plane).crumbs.size();
     };
     EXPECT_EQ(dropped(outline + bump, 4.5F), bump.size());
     EXPECT_EQ(dropped(outline + bump, 3.5F), 0U);

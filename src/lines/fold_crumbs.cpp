@@ -87,7 +87,8 @@ void FoldCrumbs::attach(std::span<const FoldHang> hangs) {
 /// Whether a group is a ring that its own line fills.
 bool FoldCrumbs::is_dot(std::uint32_t root) const {
     const Group& group = groups_[root];
-    if (group.loose || group.stub || group.length >= settings_.shortest_stub * width_) return false;
+    if (group.loose || group.stub || group.length >= settings_.shortest_stub * stroke_)
+        return false;
     constexpr int kMostInDot = 64;  // segments
     std::optional<FoldEnd> end = FoldEnd{root, true};
     for (int step = 0; end && step < kMostInDot; ++step) {
@@ -110,7 +111,7 @@ void FoldCrumbs::find_bumps() {
 
 /// Whether the stroke of an outline covers a point.
 bool FoldCrumbs::runs_on_outline(Vec2f point) const {
-    const float half = 0.5F * width_;
+    const float half = 0.5F * stroke_;
     bool covered = false;
     squares_.near(point, half + spacing_, [&](std::uint32_t k) {
         const LineType type = lines_[k].type;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -40,7 +41,8 @@ class FoldCrumbs {
           probe_(probe),
           loop_(loop),
           spacing_(spacing),
-          width_(width),
+          stroke_(width),
+          width_(std::max(width, settings.least_width)),
           settings_(settings),
           groups_(lines.size()) {}
 
@@ -85,7 +87,9 @@ class FoldCrumbs {
     FoldGraph& graph_;
     const FoldProbe& probe_;
     const FoldLoop& loop_;
-    float spacing_, width_;
+    float spacing_;
+    float stroke_;  ///< width of the line, pixels
+    float width_;   ///< that lengths are counted in
     const FoldSettings& settings_;
     std::vector<Group> groups_;
     std::vector<std::uint32_t> roots_;  ///< of the groups

@@ -51,7 +51,8 @@ class FoldMender {
         : lines_(lines),
           squares_(squares),
           spacing_(spacing),
-          width_(width),
+          stroke_(width),
+          width_(std::max(width, settings.least_width)),
           loop_(team.loop),
           settings_(settings),
           probe_(lines, viewpoint, spacing, team.workers, settings),
@@ -439,7 +440,7 @@ class FoldMender {
             endings_.loose.push_back(end.fold);
             if (end.reached == kNone) endings_.free.push_back(end.fold);
         }
-        FoldCrumbs crumbs(lines_, squares_, graph_, probe_, loop_, spacing_, width_, settings_);
+        FoldCrumbs crumbs(lines_, squares_, graph_, probe_, loop_, spacing_, stroke_, settings_);
         repairs_.crumbs = crumbs.find(endings_, repairs_.bridges, owners_);
         std::erase_if(repairs_.crumbs, [&](std::size_t k) {
             return carried_[k] != kNone && !crumbs.has(carried_[k]);
@@ -463,12 +464,14 @@ class FoldMender {
             return graph_.next({tail.fold, !tail.at_b}).value_or(FoldEnd{kNone, false});
         };
         repairs_.crumbs = FoldDoubles(lines_, squares_, pieces_, repairs_.bridges, owners_)
-                              .drop(tails_, next_of, repairs_.crumbs, settings_.shadow * width_);
+                              .drop(tails_, next_of, repairs_.crumbs, settings_.shadow * stroke_);
     }
 
     std::span<const Segment> lines_;
     const SegmentSquares& squares_;  ///< of the lines
-    float spacing_, width_;
+    float spacing_;
+    float stroke_;  ///< width of the line, pixels
+    float width_;   ///< that lengths are counted in
     const FoldLoop& loop_;
     const FoldSettings& settings_;
     FoldProbe probe_;

@@ -12,6 +12,8 @@ namespace ink {
 
 /// How self-occlusions are made whole.
 struct FoldSettings {
+    /// Widths of lines thinner than this, in pixels, count as this.
+    float least_width = 0.0F;
     /// A bridge follows the valley of the angle between surface and ray, no steeper than this sine:
     /// about 15 degrees. Suggestive contours (DeCarlo et al. 2003) run along the same valleys.
     float most_facing = 0.26F;

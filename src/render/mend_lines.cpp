@@ -53,6 +53,13 @@ float LineMender::width() const {
     return edges_.ink.styles[edges_.style_of(LineType::self_occlusion, 0)].width_px;
 }
 
+/// As wide as lines are by default in a picture of the default size. Thinner ones are judged as if
+/// they were as wide, so that a larger picture has the same lines, not more and shorter ones.
+float LineMender::least_width() const {
+    constexpr float kOfHeight = 3.0F / 1024.0F;
+    return kOfHeight * static_cast<float>(edges_.pipeline.settings.size.height);
+}
+
 void LineMender::mend_folds() {
     FoldTeam fold_team;
     for (const std::unique_ptr<LineFinder>& finder : finders_) {
@@ -61,7 +68,8 @@ void LineMender::mend_folds() {
                                      }});
     }
     fold_team.loop = [&](std::size_t count, const auto& body) { team_.loop(count, body); };
-    repairs_ = ink::mend_folds(lines_, *squares_, edges_.viewpoint, spacing(), width(), fold_team);
+    repairs_ = ink::mend_folds(lines_, *squares_, edges_.viewpoint, spacing(), width(), fold_team,
+                               {.least_width = least_width()});
 }
 
 void LineMender::close_gaps() {
@@ -73,7 +81,7 @@ void LineMender::close_gaps() {
 void LineMender::ease_joints() {
     const std::size_t first_joining = places_.size();
     const FoldJoints joints =
-        ink::ease_joints({lines_, first_joining, *squares_}, repairs_.crumbs, spacing(), width());
+        ink::ease_joints({lines_, first_joining, *squares_}, repairs_.crumbs, spacing(), judged());
     std::vector<bool> eased(lines_.size());
     for (const std::size_t k : joints.dropped) {
         eased[k] = true;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -38,6 +39,8 @@ class LineMender {
     void mend_folds();
     float spacing() const { return 1.0F / static_cast<float>(edges_.q); }
     float width() const;
+    float least_width() const;
+    float judged() const { return std::max(width(), least_width()); }
     void close_gaps();
     void ease_joints();
     void repair_toned();
