@@ -9,8 +9,7 @@ std::string scenes_dir() {
     namespace fs = std::filesystem;
     std::error_code failure;
     const fs::path program = fs::read_symlink("/proc/self/exe", failure);
-    const fs::path installed = program.parent_path().parent_path() / "share/inktrace/scenes";
-    return fs::is_directory(installed, failure) ? installed.string() : INKTRACE_SCENES_DIR;
+    return (program.parent_path() / INKTRACE_DATA / "scenes").lexically_normal().string();
 }
 
 }  // namespace inktrace::cli

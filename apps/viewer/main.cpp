@@ -53,6 +53,7 @@ int run(int argc, char** argv) {
     std::vector<std::string> files;
     app.add_option("INPUT", files, "Files to draw together");
     add_flags(app);
+    app.set_version_flag("--version", std::string("inktrace ") + inktrace::version());
     app.footer("Press ? in the window for the keys. Example: inktrace view 1crn.pdb");
     try {
         app.parse(argc, argv);
