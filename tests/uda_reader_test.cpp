@@ -172,6 +172,22 @@ TEST(UdaReader, TakesTheRadiiThatTheArchiveNamesSo) {
     EXPECT_EQ(radii(read_file(archive)), (std::vector<float>{1, 2}));
 }
 
+// As most patches are that the material has not reached, the last one too.
+TEST(UdaReader, ReadsPatchesWithoutParticles) {
+    const TemporaryFolder folder;
+    for (const bool gzip : {false, true}) {
+        const fs::path archive = write_archive(folder,
+                                               {{{"p.x", "Point", 0, 0, 1, {1, 2, 3}},
+                                                 {"p.size", "double", 0, 0, 1, {0.5}},
+                                                 {"p.x", "Point", 1, 0, 0, {}},
+                                                 {"p.size", "double", 1, 0, 0, {}}}},
+                                               {.gzip = gzip});
+        ReadOptions options = with_radius("p.size");
+        options.facts = true;
+        EXPECT_EQ(radii(read_file(archive, options)), std::vector<float>{0.5F});
+    }
+}
+
 TEST(UdaReader, JoinsMaterialsAndTellsThemApartByAField) {
     const TemporaryFolder folder;
     const fs::path archive = write_archive(folder, {{{"p.x", "Point", 2, 0, 1, {1, 0, 0}},

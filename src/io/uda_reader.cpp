@@ -211,7 +211,7 @@ class UdaReader {
                                       block.particles, count));
         }
         const std::string bytes = block_bytes(block, step_, type, swap_);
-        float* const values = &field.values[group->second.begin * type.components];
+        float* const values = field.values.data() + group->second.begin * type.components;
         for (std::size_t i = 0; i < count * type.components; ++i) {
             values[i] = static_cast<float>(type.load(bytes.data() + i * type.bytes, swap_));
         }
@@ -222,7 +222,7 @@ class UdaReader {
         if (groups_.begin()->first.first == groups_.rbegin()->first.first) return;
         add_field("material", 1, [&](Field& field) {
             for (const auto& [place, group] : groups_) {
-                std::fill_n(&field.values[group.begin], group.count,
+                std::fill_n(field.values.data() + group.begin, group.count,
                             static_cast<float>(place.first));
             }
         });

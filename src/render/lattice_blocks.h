@@ -40,9 +40,12 @@ class LatticeBlocks {
         const int along = down ? j : i;
         return {(down ? down_ : across_)[static_cast<std::size_t>(along / kLanes)], along % kLanes};
     }
-    /// The packet of the block in a column and row of blocks, or kEmpty; those after it in its row
-    /// follow it in memory.
-    const std::uint32_t& block(int column, int row) const { return block_at_[index(column, row)]; }
+    /// The packet of the block in a column and row of blocks, or kEmpty.
+    std::uint32_t block(int column, int row) const { return block_at_[index(column, row)]; }
+    /// Those of `count` blocks of a row, from a column on.
+    std::span<const std::uint32_t> blocks(int column, int row, std::size_t count) const {
+        return std::span(block_at_).subspan(index(column, row), count);
+    }
 
   private:
     std::size_t index(int column, int row) const {

@@ -122,13 +122,15 @@ void LineFinder::gather_row(int x0, int x1, int y) {
     mixed_.clear();
     mixed_.reserve(count);  // what points to them stays
     const bool as_traced = edges_.q == 1;
-    const std::uint32_t* const blocks =
-        &lattice_.block((x0 - grid_.x0) / kBlockSide, (y - grid_.y0) / kBlockSide);
-    for (std::size_t n = 0; as_traced && n < count; ++n) {
-        const std::uint32_t k = blocks[n];
-        if (k != LatticeBlocks::kEmpty && seen_[k] != 0) block_row_[n] = &colors_[k];
+    if (as_traced) {
+        const std::span<const std::uint32_t> blocks =
+            lattice_.blocks((x0 - grid_.x0) / kBlockSide, (y - grid_.y0) / kBlockSide, count);
+        for (std::size_t n = 0; n < count; ++n) {
+            const std::uint32_t k = blocks[n];
+            if (k != LatticeBlocks::kEmpty && seen_[k] != 0) block_row_[n] = &colors_[k];
+        }
+        if (!changes) return;
     }
-    if (as_traced && !changes) return;
     for (std::size_t n = 0; n < count; ++n) {
         const int x = x0 + static_cast<int>(n) * kBlockSide;
         if (!as_traced || (changes && smoothing_.changes(x, y))) block_row_[n] = mixed_block(x, y);

@@ -201,7 +201,7 @@ void LineFinder::copy_to_grid(std::size_t block, const T* from, T* plane) const 
 
 /// IDs and surfaces of samples, for where the grid is not filled.
 void LineFinder::name_samples(std::size_t first, std::size_t count) {
-    edges_.pipeline.ids.resolve(std::span(hits_).subspan(first, count), &ids_[first]);
+    edges_.pipeline.ids.resolve(std::span(hits_).subspan(first, count), ids_.data() + first);
     for (std::size_t k = first; k < first + count; ++k) {
         edges_.surfaces.number(hits_[k], surfaces_[k]);
     }
