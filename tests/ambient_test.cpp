@@ -65,10 +65,14 @@ std::vector<Seen> look_at(const Scene& scene, const Tracer& tracer, const Ambien
             sampler.trace_blocks(std::vector{Block{x, y}}, {}, hits);
             const NormalPacket normals{hits[0].normal_x, hits[0].normal_y, hits[0].normal_z};
             const RayPacket& rays = sampler.packets()[0];
+            std::vector<int> chosen;
+            for (int i = 0; i < kLanes; ++i) {
+                if (hits[0].object[i] != kNoObject && random() % one_of == 0) chosen.push_back(i);
+            }
+            if (chosen.empty()) continue;
             Lanes<float> open;
             ambient->openness({rays, sampler.points()[0], hits[0], normals}, open);
-            for (int i = 0; i < kLanes; ++i) {
-                if (hits[0].object[i] == kNoObject || random() % one_of != 0) continue;
+            for (const int i : chosen) {
                 const float t = hits[0].t[i];
                 seen.push_back(
                     {{rays.origin_x[i] + t * rays.dir_x[i], rays.origin_y[i] + t * rays.dir_y[i],

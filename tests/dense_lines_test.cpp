@@ -16,21 +16,27 @@
 namespace ink::test {
 namespace {
 
-/// Spheres side by side in a square of 100 x 100 that takes `side` pixels; the middle of it, which
-/// looks like all of it, where that is large.
-Plane<float> ink_of_packed_spheres(int side, double density, double width_px = 3.0) {
-    const bool all = side <= 300;
+/// Spheres side by side in a square of 120 x 120.
+Scene packed_spheres() {
     std::mt19937 random(3);
     std::vector<Sphere> spheres;
     for (int k = 0; k < 20000; ++k) {
         const Vec3f p = uniform_point(random) - Vec3f{0.5F, 0.5F, 0.5F};
         spheres.push_back({{p.x * 120.0F, p.y * 120.0F, p.z * 4.0F}, 1.2F});
     }
+    return Scene({sphere_object(spheres)});
+}
+
+/// Of packed spheres where a square of 100 x 100 of them takes `side` pixels; the middle of it,
+/// which looks like all of it, where that is large.
+Plane<float> ink_of_packed_spheres(int side, double density, double width_px = 3.0) {
+    static const Scene scene = packed_spheres();
+    const bool all = side <= 300;
     const int shown = all ? side : side / 2;
     Settings settings = plan_view({shown, shown}, width_px);
     settings.view.orthographic = all ? 100.0 : 50.0;
     settings.line_density = density;
-    return plane(draw(Scene({sphere_object(spheres)}), settings), "line.A");
+    return plane(draw(scene, settings), "line.A");
 }
 
 TEST(DenseLines, BecomeAToneHoweverSmallThePicture) {
