@@ -66,6 +66,30 @@ TEST_P(EveryScreenShape, IsHitWhereItsEquationSaysAtAnySize) {
     expect_same_hits(seen, seen.random_points(4, 4000));
 }
 
+/// Rays along an axis or a face, which some of the equations lose a term for.
+TEST_P(EveryScreenShape, IsHitWhereItsEquationSaysAlongItsAxes) {
+    Glyphs glyphs{GetParam().shape, {}, {}, {}};
+    for (const Placement& placement :
+         {Placement{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {-3, 0, 0.2F}},
+          Placement{{0, 1, 0}, {0, 0, 1}, {1, 0, 0}, {0, 0.3F, 0}},
+          Placement{{0, 0, -0.7F}, {1.2F, 0, 0}, {0, 1.4F, 0}, {3, 0, -0.1F}}}) {
+        glyphs.placements.push_back(placement);
+    }
+    for (const View side : {View::front, View::right, View::top}) {
+        for (const bool parallel : {true, false}) {
+            ViewSettings view;
+            view.view = side;
+            if (parallel) view.orthographic = 0.0;
+            Object object;
+            object.kind = ObjectKind::shape;
+            object.shape = glyphs;
+            const Seen seen({std::move(object)}, view, kSmall, make_double_tracer);
+            expect_same_hits(seen, seen.pixels());
+            expect_same_hits(seen, seen.random_points(6, 500));
+        }
+    }
+}
+
 TEST_P(EveryScreenShape, IsSeenFromJustBeforeItAndFromFar) {
     for (const double distance : {2.2, 1e4}) {
         ViewSettings view;

@@ -230,7 +230,8 @@ HWY_INLINE LocalHit meet_frustum(LocalRays rays, float slope, float middle, bool
     const auto b = hn::Sub(hn::Add(hn::Mul(p.x, d.x), hn::Mul(p.y, d.y)), hn::Mul(radius, growth));
     const auto c = hn::Sub(hn::Add(hn::Mul(p.x, p.x), hn::Mul(p.y, p.y)), hn::Mul(radius, radius));
     const auto rest = hn::Sub(hn::Mul(b, b), hn::Mul(a, c));
-    const auto real = hn::Ge(rest, hn::Zero(kFloats));
+    // Of rays along the axis of a cylinder nothing is left: they run beside it for ever.
+    const auto real = hn::Gt(rest, hn::Zero(kFloats));
     const auto root = hn::Sqrt(hn::Max(rest, hn::Zero(kFloats)));
     // The sum of b and root of one sign loses no digits; the other crossing follows from c.
     const auto sum = hn::Neg(hn::Add(b, hn::CopySign(root, b)));
