@@ -152,6 +152,8 @@ INSTANTIATE_TEST_SUITE_P(
                   {"'--line-wdth'", "did you mean --line-width?", kSeeHelp}),
         draw_with("unknown_flag_that_is_no_setting", {"--quite"},
                   {"'--quite'", "did you mean --quiet?", kSeeHelp}),
+        draw_with("short_flag_with_two_dashes", {"--o", "b.png"},
+                  {"'--o'", "did you mean -o?", kSeeHelp}),
         draw_with("unknown_short_flag", {"-x"}, {"'-x'", kSeeHelp}),
         draw_with("flag_without_its_value", {"--size"}, {"--size", "WxH missing", kSeeHelp}),
         draw_with("size_with_zero", {"--size", "0x5"}, {"--size: ", "'0x5'", "from 1 to 65500"}),

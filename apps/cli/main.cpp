@@ -52,6 +52,7 @@ std::string unknown_argument(const CLI::App& app) {
     const std::string_view dashes = is_flag ? "--" : "";
     if (!word.starts_with(dashes)) return text;  // one letter resembles everything
     const std::string_view name = std::string_view(word).substr(dashes.size());
+    if (is_flag && name == "o") return text + "; did you mean -o?";
     const std::string_view guess = ink::closest(name, known);
     if (!guess.empty()) text += fmt::format("; did you mean {}{}?", dashes, guess);
     return text;

@@ -31,8 +31,10 @@ Size read_size(std::string_view text) {
     const auto sides = split(text, 'x');
     const auto is_whole = [](std::string_view side) { return parse_int(side).has_value(); };
     if (sides.size() != 2 || !std::ranges::all_of(sides, is_whole)) {
-        throw UsageError(
-            fmt::format("'{}' is not a size; write WIDTHxHEIGHT in pixels, as in 1024x768", text));
+        throw UsageError(fmt::format(
+            "'{}' is not a size; write WIDTHxHEIGHT in pixels, as in 1024x768 (85 mm at "
+            "600 dpi: 85 / 25.4 * 600 = 2008)",
+            text));
     }
     const auto side = [&](std::string_view part) {
         const auto value = parse_int(part);
