@@ -274,12 +274,14 @@ TEST_F(CommandLine, InfoTellsMachinesTheSame) {
 
 TEST_F(CommandLine, InfoTellsTypesAndWhichColumnsAreWords) {
     folder_.write("a.csv", "x,y,z,radius,name,type\n0,0,0,1,sand,1\n3,0,0,1,clay,4\n");
-    expect_says(run({"info", "a.csv"}).out,
-                {"types       1 4", "field       name  no numbers", "field       type  1 to 4"});
+    expect_says(
+        run({"info", "a.csv"}).out,
+        {"types       1 4", "field       name  words: clay sand", "field       type  1 to 4"});
     const auto json = nlohmann::json::parse(run({"info", "--json", "a.csv"}).out);
     EXPECT_EQ(json[0]["names"]["types"], (std::vector<std::string>{"1", "4"}));
     EXPECT_EQ(json[0]["fields"][1]["name"], "name");
     EXPECT_TRUE(json[0]["fields"][1]["least"].is_null());
+    EXPECT_EQ(json[0]["fields"][1]["words"], (std::vector<std::string>{"clay", "sand"}));
     EXPECT_EQ(json[0]["fields"][2]["most"], 4.0);
 }
 

@@ -35,6 +35,7 @@ nlohmann::ordered_json to_json(const FileInfo& info) {
         // Of words there is neither.
         entry["least"] = has_numbers(field) ? nlohmann::ordered_json(field.least) : nullptr;
         entry["most"] = has_numbers(field) ? nlohmann::ordered_json(field.most) : nullptr;
+        if (!field.words.empty()) entry["words"] = field.words;
         fields.push_back(std::move(entry));
     }
     return {{"file", info.path.string()},
@@ -79,6 +80,12 @@ std::string print_count(const FileInfo& info, const std::string& what, std::uint
     return named == info.names.end() ? number : number + ": " + print_names(named->second);
 }
 
+std::string print_values(const FieldInfo& field) {
+    if (!field.words.empty()) return "words: " + print_names(field.words);
+    if (!has_numbers(field)) return "no numbers";
+    return fmt::format("{:.6g} to {:.6g}", field.least, field.most);
+}
+
 bool is_counted(const FileInfo& info, const std::string& what) {
     return std::ranges::any_of(info.counts, [&](const auto& count) { return count.first == what; });
 }
@@ -103,10 +110,7 @@ void print_text(const FileInfo& info) {
     for (const FieldInfo& field : info.fields) {
         const std::string width =
             field.components == 1 ? std::string() : fmt::format(" ({})", field.components);
-        const std::string range = has_numbers(field)
-                                      ? fmt::format("{:.6g} to {:.6g}", field.least, field.most)
-                                      : "no numbers";
-        line("field", fmt::format("{}{}  {}", field.name, width, range));
+        line("field", fmt::format("{}{}  {}", field.name, width, print_values(field)));
     }
     for (const std::string& warning : info.warnings) line("warning", warning);
 }

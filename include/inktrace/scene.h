@@ -24,6 +24,7 @@ struct FieldInfo {
     /// at.
     double least = 0.0;
     double most = 0.0;
+    std::vector<std::string> words{};  ///< of a field of words: those that there are, in order
 };
 
 /// What a file held.

@@ -139,7 +139,7 @@ FileInfo describe(const std::filesystem::path& file, const ink::FileContents& co
                      first.color_scale->map == nullptr;
     for (const ink::FieldSummary& field : contents.fields) {
         if (info.kind_field.empty() && ink::is_kind_name(field.name)) info.kind_field = field.name;
-        info.fields.push_back({field.name, field.components, field.least, field.most});
+        info.fields.push_back({field.name, field.components, field.least, field.most, field.words});
     }
     return info;
 }

@@ -184,6 +184,7 @@ bool ParticleColumns::add_row(std::string_view row, char separator, std::string&
                 }
                 return false;
             }
+            if (summarize_) tell_word(column, unquoted(word));
             value = std::numeric_limits<double>::quiet_NaN();
         }
         if (column.axis >= 0) position[static_cast<std::size_t>(column.axis)] = value;
@@ -218,6 +219,12 @@ bool ParticleColumns::take_word_of(Column& column, std::string_view word, double
     return true;
 }
 
+/// Notes a word of a column that nothing draws.
+void ParticleColumns::tell_word(Column& column, std::string_view word) {
+    if (word.empty() || column.told.size() > kMostTold || column.told.contains(word)) return;
+    column.told.emplace(word);
+}
+
 /// Words in their order, so that it does not matter which comes first.
 Particles& ParticleColumns::particles() {
     for (Column& column : columns_) {
@@ -228,6 +235,7 @@ Particles& ParticleColumns::particles() {
             sorted[static_cast<std::size_t>(number)] = static_cast<float>(names.size());
             names.push_back(word);
         }
+        column.told.insert(names.begin(), names.end());
         for (const FieldLayout::Place place : column.destinations) {
             Field& field = particles_.fields[place.field];
             for (float& value : field.values) {
@@ -245,7 +253,10 @@ std::vector<FieldSummary> ParticleColumns::summaries() const {
     std::vector<FieldSummary> summaries;
     for (const Column& column : columns_) {
         if (column.axis >= 0) continue;
-        summaries.push_back({column.name, 1, column.least, column.most});
+        FieldSummary& summary = summaries.emplace_back(column.name, 1, column.least, column.most);
+        const bool has_numbers = column.least <= column.most;
+        if (has_numbers || column.told.size() > kMostTold) continue;
+        summary.words.assign(column.told.begin(), column.told.end());
     }
     return summaries;
 }

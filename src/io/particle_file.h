@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <functional>
 #include <map>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -51,9 +52,14 @@ class ParticleColumns {
         std::map<std::string, float, std::less<>> words{};  ///< in the order that they come in
         int axis = -1;                                      ///< 0, 1, 2: a coordinate
         std::vector<FieldLayout::Place> destinations;
-        double least, most;  ///< of the finite values
+        double least, most;                         ///< of the finite values
+        std::set<std::string, std::less<>> told{};  ///< words, for the summary
     };
 
+    /// More words than these are names, which a summary leaves out.
+    static constexpr std::size_t kMostTold = 10000;
+
+    static void tell_word(Column& column, std::string_view word);
     bool take_word_of(Column& column, std::string_view word, double& value) const;
     void find_axes(const std::filesystem::path& file);
 

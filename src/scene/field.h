@@ -24,6 +24,8 @@ struct FieldSummary {
     double least =
         0.0;  ///< of all components, over the finite values; least > most: none is finite
     double most = 0.0;
+    /// Of a field of words: those that there are, in order; it has no range.
+    std::vector<std::string> words{};
 };
 
 /// One number an entry: of a field by its name (of several components: the length of the vector),
