@@ -35,11 +35,12 @@ inline std::optional<std::pair<double, double>> color_range_over(
 }
 
 /// The field whose kinds of particles have a colour each in one of several frames, so that they do
-/// in all; empty where there is none.
+/// in all; empty where there is none. `go_on` as for `color_range_over`.
 inline std::string kinds_over(const std::filesystem::path& file, std::span<const int> frames,
-                              Settings settings) {
-    for (const int frame : frames) {
-        settings.set("frame", std::to_string(frame));
+                              Settings settings, const std::function<bool(double share)>& go_on) {
+    for (std::size_t k = 0; k < frames.size(); ++k) {
+        if (!go_on(static_cast<double>(k) / static_cast<double>(frames.size()))) return {};
+        settings.set("frame", std::to_string(frames[k]));
         const FileInfo info = inspect(file, settings);
         if (info.kind_field.empty() || info.has_kinds) return info.kind_field;
     }

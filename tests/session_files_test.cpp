@@ -95,6 +95,34 @@ TEST(Session, PlaysAndStepsThroughFrames) {
     session.play(false);
 }
 
+TEST(Session, PlaysWithTheColoursOfKindsThatAnAnimationIsDrawnWith) {
+    // One kind in the first frame, two in the second.
+    std::string text;
+    for (const int type : {1, 2}) {
+        text += fmt::format(
+            "ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n2\nITEM: BOX BOUNDS pp pp pp\n0 9\n0 9\n"
+            "0 9\nITEM: ATOMS id type x y z radius\n1 1 0 0 0 1\n2 {} 3 0 0 1\n",
+            type);
+    }
+    const TemporaryFolder folder;
+    Owner owner;
+    Session& session = owner.session;
+    session.open({folder.write("run.lammpstrj", text)}, {});
+    session.resize({120, 90});
+    ASSERT_TRUE(owner.wait_for_picture());
+    EXPECT_EQ(session.settings().get("color-by"), "");
+    session.frames_per_second = 100;
+    session.play(true);
+    ASSERT_TRUE(owner.wait_for([&] { return session.frame() == 1; }));
+    session.play(false);
+    session.set_frame(0);
+    ASSERT_TRUE(owner.wait_for_picture());
+    EXPECT_EQ(session.settings().get("color-by"), "type");
+    EXPECT_EQ(session.settings().get("colormap"), "categories");
+    ASSERT_EQ(run(session.command_line("x.png"), folder.path()), 0);
+    EXPECT_EQ(read_png(folder.path() / "x.png"), bytes(*session.painting().picture));
+}
+
 TEST(Session, PlaysWithTheRadiusAndRangeOfColoursThatAnAnimationIsDrawnWith) {
     // Neighbours at distance 1, then 2, then 1; the greatest value comes last.
     std::string text;

@@ -80,16 +80,17 @@ class Animation {
                                                        arguments_.inputs.end());
         std::vector<int> frames(static_cast<std::size_t>(range.last - range.first) + 1);
         std::iota(frames.begin(), frames.end(), range.first);
+        const auto go_on = [](double) { return true; };
         if (settings_.get("color-by").empty()) {
             const std::string field =
-                files.size() == 1 ? kinds_over(files[0], frames, settings_) : "";
+                files.size() == 1 ? kinds_over(files[0], frames, settings_, go_on) : "";
             if (field.empty()) return;
             settings_.set("color-by", field).set("colormap", "categories");
             stale_ = true;
             return;
         }
         if (!settings_.get("color-range").empty()) return;
-        const auto values = color_range_over(files, frames, settings_, [](double) { return true; });
+        const auto values = color_range_over(files, frames, settings_, go_on);
         if (!values) return;
         settings_.set("color-range", fmt::format("{}:{}", values->first, values->second));
         stale_ = true;

@@ -39,7 +39,6 @@ bool Loader::look_through(LoadRequest& request) {
         const auto radius = inspect(request.files.front(), first).chosen_radius;
         if (radius) settings.set("radius", fmt::format("{}", *radius));
     }
-    if (!settings.get("color-range").empty()) return true;
     Clock::time_point told{};
     bool whole = true;
     const auto go_on = [&](double share) {
@@ -53,6 +52,13 @@ bool Loader::look_through(LoadRequest& request) {
         whole = !stop_ && !ending_ && !waiting_;
         return whole;
     };
+    if (settings.get("color-by").empty() && request.files.size() == 1) {
+        const std::string field =
+            kinds_over(request.files.front(), request.series, settings, go_on);
+        if (!field.empty()) settings.set("color-by", field).set("colormap", "categories");
+        if (!field.empty() || !whole) return whole;
+    }
+    if (!settings.get("color-range").empty()) return true;
     const auto range = color_range_over(request.files, request.series, settings, go_on);
     if (range) settings.set("color-range", fmt::format("{}:{}", range->first, range->second));
     return whole;

@@ -240,9 +240,11 @@ bool Session::chooses_by_frame() const {
     const auto has_range = [](const FileInfo& info) { return info.color_range.has_value(); };
     const bool range =
         settings_.get("color-range").empty() && std::ranges::any_of(infos_, has_range);
+    const bool kinds = settings_.get("color-by").empty() && infos_.size() == 1 &&
+                       !infos_.front().kind_field.empty();
     const bool radius = settings_.get("radius").empty() && infos_.size() == 1 &&
                         infos_.front().chosen_radius.has_value();
-    return range || radius;
+    return range || kinds || radius;
 }
 
 /// The frames to look through: of very many so many as tell enough.
@@ -263,6 +265,7 @@ void Session::keep_series(const Settings& found) {
     series_radius_ = found.get("radius");
     Settings settings = settings_;
     settings.set("color-range", series_range_).set("radius", series_radius_);
+    settings.set("color-by", found.get("color-by")).set("colormap", found.get("colormap"));
     if (settings.changed() == settings_.changed()) return;
     history_.remember(settings_, "color-range", Clock::now());
     settings_ = std::move(settings);

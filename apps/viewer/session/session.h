@@ -81,8 +81,9 @@ class Session {
     int frame() const;
     void set_frame(int frame);  ///< wraps round at both ends
     bool playing() const { return playing_; }
-    /// Plays all frames alike: with one range of colours and one radius, where these are left to
-    /// each frame, as `inktrace render` draws them. All frames are looked through first.
+    /// Plays all frames alike: with one range of colours, or a colour for each kind of particles,
+    /// and one radius, where these are left to each frame, as `inktrace render` draws them. All
+    /// frames are looked through first.
     void play(bool on);
     /// Share of the frames that has been, in [0, 1).
     double looked_through() const { return loader_.looked_through(); }
