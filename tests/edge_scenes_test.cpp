@@ -316,6 +316,26 @@ TEST(CrackInAMesh, ThatIsWiderThanAPixelHasALineAlongIt) {
     }
 }
 
+/// A ball has no fold of its own: of balls of one part that do not touch, every outline stays, and
+/// be it a pixel beside another one.
+TEST(BallsOfOnePart, HaveTheOutlinesOfBallsThatAreToldApart) {
+    std::vector<Sphere> balls;
+    for (int k = 0; k < 5; ++k) {
+        const auto x = static_cast<float>(60 * k - 120);
+        balls.push_back({{x, 0, 30}, 25.0F});
+        balls.push_back({{x + 1.0F + 0.7F * static_cast<float>(k), 0.3F, -30}, 25.0F});
+    }
+    const Scene scene({sphere_object(std::move(balls))});
+    Settings settings = plan_view({320, 64});
+    settings.ids = IdLevel::primitive;
+    std::map<LineType, double> apart = lengths(scene, settings);
+    settings.ids = IdLevel::object;
+    std::map<LineType, double> one = lengths(scene, settings);
+    EXPECT_GT(one[LineType::self_occlusion], 100.0);
+    EXPECT_NEAR(one[LineType::silhouette] + one[LineType::self_occlusion],
+                apart[LineType::silhouette], 0.01 * apart[LineType::silhouette]);
+}
+
 TEST(MendedLines, DoNotDependOnTilesOrThreads) {
     const Scene scene({hills()});
     Settings settings = plan_view({240, 160}, 2.0);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <set>
 #include <utility>
+#include <variant>
 
 #include "base/timer.h"
 #include "lines/fold_joints.h"
@@ -23,10 +24,39 @@ void LineMender::mend() {
     change();
 }
 
+namespace {
+
+/// Whether every piece of an object is convex, so that none has a fold of its own: what looks like
+/// one is the outline of one piece before another of the same part, and whole as it is.
+bool is_of_convex_pieces(const Object& object) {
+    if (std::holds_alternative<Spheres>(object.shape)) return true;
+    const auto* const glyphs = std::get_if<Glyphs>(&object.shape);
+    if (glyphs == nullptr) return false;
+    const GlyphKind kind = glyphs->shape.kind;
+    return kind != GlyphKind::torus && kind != GlyphKind::gaussian && kind != GlyphKind::waves;
+}
+
+}  // namespace
+
+LineMender::LineMender(const EdgesPlan& edges,
+                       const std::vector<std::unique_ptr<LineFinder>>& finders,
+                       std::vector<TileLines>& found, std::vector<std::vector<Segment>>& toned,
+                       Team& team)
+    : edges_(edges), finders_(finders), found_(found), toned_(toned), team_(team) {
+    for (const Object& object : edges.pipeline.scene.objects()) {
+        convex_.push_back(is_of_convex_pieces(object));
+    }
+}
+
+bool LineMender::is_fold(const Segment& segment) const {
+    return segment.type == LineType::self_occlusion && segment.owner != kBackground &&
+           !convex_[edges_.pipeline.ids.object_of(segment.owner)];
+}
+
 bool LineMender::has_breaks() const {
     const auto may_break = [&](const Segment& segment) {
-        return segment.level == 0 && (segment.type == LineType::self_occlusion ||
-                                      (segment.type == LineType::crease && edges_.has_meshes));
+        return segment.level == 0 &&
+               (is_fold(segment) || (segment.type == LineType::crease && edges_.has_meshes));
     };
     return std::ranges::any_of(found_, [&](const TileLines& tile) {
         return std::ranges::any_of(tile.segments, may_break);
@@ -43,6 +73,9 @@ void LineMender::gather() {
             const Segment& segment = found_[tile].segments[k];
             if (segment.level != 0 || segment.type == LineType::mesh) continue;
             lines_.push_back(segment);
+            if (segment.type == LineType::self_occlusion && !is_fold(segment)) {
+                lines_.back().type = LineType::silhouette;
+            }
             places_.push_back({tile, k});
         }
     }

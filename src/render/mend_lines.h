@@ -20,8 +20,7 @@ class LineMender {
   public:
     /// One finder a thread, which have ended their search, for rays; they count these.
     LineMender(const EdgesPlan& edges, const std::vector<std::unique_ptr<LineFinder>>& finders,
-               std::vector<TileLines>& found, std::vector<std::vector<Segment>>& toned, Team& team)
-        : edges_(edges), finders_(finders), found_(found), toned_(toned), team_(team) {}
+               std::vector<TileLines>& found, std::vector<std::vector<Segment>>& toned, Team& team);
 
     /// For the team's leader.
     void mend();
@@ -35,6 +34,8 @@ class LineMender {
     };
 
     bool has_breaks() const;
+    /// Whether a line is a self-occlusion that may be broken.
+    bool is_fold(const Segment& segment) const;
     void gather();
     void mend_folds();
     float spacing() const { return 1.0F / static_cast<float>(edges_.q); }
@@ -51,6 +52,7 @@ class LineMender {
     std::vector<TileLines>& found_;
     std::vector<std::vector<Segment>>& toned_;
     Team& team_;
+    std::vector<bool> convex_;    ///< objects that have no folds, by their numbers
     std::vector<Segment> lines_;  ///< seen directly, but not between faces; then what joins them
     std::vector<Place> places_;   ///< of the first ones
     std::optional<plane::SegmentSquares> squares_;  ///< likewise
