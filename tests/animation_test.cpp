@@ -216,6 +216,10 @@ TEST_F(CommandLine, LegendComesWithColoursOfNumbersUnlessItIsUnwanted) {
     expect_done(run(
         {"render", "a.csv", "-o", "a.svg", "--size", "256x256", "--color-by", "heat", "--quiet"}));
     expect_says(read_bytes(file("a.svg")), {"<g id=\"legend\""});
+    // In a PDF they can be searched.
+    expect_done(run(
+        {"render", "a.csv", "-o", "a.pdf", "--size", "256x256", "--color-by", "heat", "--quiet"}));
+    expect_says(read_bytes(file("a.pdf")), {"/ToUnicode", "/FontFile", "DejaVuSans"});
 }
 
 TEST_F(CommandLine, AnimationNeedsNumbersInTheNamesOfItsPictures) {

@@ -80,21 +80,23 @@ std::vector<Curve> to_curves(const cairo_path_t& path) {
     return curves;
 }
 
+void set_font(cairo_t* cr, double size) {
+    const std::unique_ptr<cairo_font_options_t, DestroyOptions> options(
+        cairo_font_options_create());
+    cairo_font_options_set_hint_style(options.get(), CAIRO_HINT_STYLE_NONE);
+    cairo_font_options_set_hint_metrics(options.get(), CAIRO_HINT_METRICS_OFF);
+    cairo_set_font_options(cr, options.get());
+    cairo_select_font_face(cr, "DejaVu Sans", CAIRO_FONT_SLANT_NORMAL, CAIRO_FONT_WEIGHT_NORMAL);
+    cairo_set_font_size(cr, size);
+}
+
 /// Words as outlines. On a surface without bounds: cairo leaves out letters beyond those of others.
 class Typesetter {
   public:
     explicit Typesetter(double size)
         : surface_(cairo_recording_surface_create(CAIRO_CONTENT_ALPHA, nullptr)),
           context_(cairo_create(surface_.get())) {
-        cairo_t* const cr = context_.get();
-        const std::unique_ptr<cairo_font_options_t, DestroyOptions> options(
-            cairo_font_options_create());
-        cairo_font_options_set_hint_style(options.get(), CAIRO_HINT_STYLE_NONE);
-        cairo_font_options_set_hint_metrics(options.get(), CAIRO_HINT_METRICS_OFF);
-        cairo_set_font_options(cr, options.get());
-        cairo_select_font_face(cr, "DejaVu Sans", CAIRO_FONT_SLANT_NORMAL,
-                               CAIRO_FONT_WEIGHT_NORMAL);
-        cairo_set_font_size(cr, size);
+        set_font(context_.get(), size);
     }
 
     double width(const std::string& text) const {
@@ -102,12 +104,11 @@ class Typesetter {
         cairo_text_extents(context_.get(), text.c_str(), &extents);
         return extents.x_advance;
     }
-    /// From x on, about the height y of a small letter's middle.
-    std::vector<Curve> outlines(const std::string& text, double x, double y, double size) const {
-        constexpr double kMiddle = 0.36;  // of the capitals' height over the base line
+    /// From x on, on the base line y.
+    std::vector<Curve> outlines(const std::string& text, double x, double y) const {
         cairo_t* const cr = context_.get();
         cairo_new_path(cr);
-        cairo_move_to(cr, x, y + kMiddle * size);
+        cairo_move_to(cr, x, y);
         cairo_text_path(cr, text.c_str());
         const std::unique_ptr<cairo_path_t, DestroyPath> path(cairo_copy_path(cr));
         return to_curves(*path);
@@ -250,8 +251,11 @@ class LegendMaker {
         }
     }
 
+    /// From x on, about the height y of a capital's middle.
     void text(const std::string& words, double x, double y) {
-        legend_.shapes.push_back({type_.outlines(words, x, y, em_), ink_, true});
+        constexpr double kMiddle = 0.36;  // over the base line
+        const double base = y + kMiddle * em_;
+        legend_.shapes.push_back({type_.outlines(words, x, base), ink_, words, x, base, em_});
     }
 
     void rectangle(double x, double y, double width, double height, Rgb8 color) {
@@ -411,18 +415,26 @@ ViewSettings beside(const Legend& legend, ViewSettings view, Size size) {
     return view;
 }
 
-void draw(const Legend& legend, cairo_t* cr) {
+void draw(const Legend& legend, cairo_t* cr, Words words) {
     cairo_set_fill_rule(cr, CAIRO_FILL_RULE_WINDING);
     cairo_set_line_join(cr, CAIRO_LINE_JOIN_ROUND);
     for (const LegendShape& shape : legend.shapes) {
         add_path(cr, shape);
-        if (shape.is_text) {
+        if (shape.is_text()) {
             set_color(cr, legend.paper);
             cairo_set_line_width(cr, 2.0 * legend.rim_px);
             cairo_stroke_preserve(cr);
         }
         set_color(cr, shape.color);
-        cairo_fill(cr);
+        if (words == Words::text && shape.is_text() && !shape.outlines.empty()) {
+            cairo_new_path(cr);
+            set_font(cr, shape.size);
+            cairo_move_to(cr, shape.x, shape.y);
+            cairo_show_text(cr, shape.text.c_str());
+            cairo_new_path(cr);
+        } else {
+            cairo_fill(cr);
+        }
     }
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "base/color.h"
@@ -12,11 +13,17 @@ typedef struct _cairo cairo_t;
 
 namespace ink {
 
-/// A filled area of a legend: a field of colour, or a word as outlines.
+/// A filled area of a legend: a field of colour, or words as outlines.
 struct LegendShape {
     std::vector<Curve> outlines;  ///< closed; what they wind round is filled
     Rgb8 color;
-    bool is_text = false;  ///< stands out from what is below by a rim of the legend's paper
+    /// The words, which stand out from what is below by a rim of the legend's paper; empty for a
+    /// field.
+    std::string text{};
+    double x = 0.0, y = 0.0;  ///< where their base line begins
+    double size = 0.0;        ///< of the font
+
+    bool is_text() const { return !text.empty(); }
 };
 
 /// What the colours of a picture mean: scales of numbers and lists of kinds, in a corner. In pixels
@@ -36,7 +43,9 @@ Legend make_legend(const Scene& scene, const Settings& settings);
 /// The view, with the scene beside the legend, where the camera is free to choose its place.
 ViewSettings beside(const Legend& legend, ViewSettings view, Size size);
 
-void draw(const Legend& legend, cairo_t* cr);
+/// How words are drawn: as outlines, or as text, which documents keep with its font.
+enum class Words { outlines, text };
+void draw(const Legend& legend, cairo_t* cr, Words words = Words::outlines);
 void lay_over(const Legend& legend, Film& film);
 
 }  // namespace ink

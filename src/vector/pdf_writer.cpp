@@ -192,7 +192,7 @@ void encode_pdf(ByteSink& sink, const LineArt& art) {
     cairo_set_line_join(cr, CAIRO_LINE_JOIN_ROUND);
     draw_regions(cr, art);
     draw_lines(cr, art);
-    draw(art.legend, cr);
+    draw(art.legend, cr, Words::text);
     cairo_show_page(cr);
     check(cairo_status(cr));
     cairo_surface_finish(surface.get());

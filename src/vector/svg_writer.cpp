@@ -250,7 +250,7 @@ void SvgText::add_legend() {
     for (const LegendShape& shape : art_.legend.shapes) {
         std::string path;
         for (const Curve& curve : shape.outlines) append_curve(path, curve, true);
-        if (shape.is_text) {
+        if (shape.is_text()) {
             add("<path fill=\"none\" stroke=\"{}\" stroke-width=\"{:.2f}\" d=\"{}\"/>\n",
                 to_string(art_.legend.paper), 2.0 * art_.legend.rim_px, path);
         }
