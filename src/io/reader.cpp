@@ -57,7 +57,11 @@ void check_readable(const std::filesystem::path& file, bool wants_folder) {
     std::error_code error;
     const auto status = std::filesystem::status(file, error);
     if (!std::filesystem::exists(status)) {
-        throw InputError(file, "no such file; check the path");
+        // A word without an extension is more likely the rest of a value than a file.
+        const bool has_format = file.has_extension() || file.has_parent_path();
+        throw InputError(file, has_format ? "no such file; check the path"
+                                          : "no such file; check the path (values have no blanks: "
+                                            "0.5pt, silhouette,crease)");
     }
     if (std::filesystem::is_directory(status) != wants_folder) {
         throw InputError(file, wants_folder ? "is not a directory; name the folder of the archive"
