@@ -78,9 +78,9 @@ Camera::Camera(const Scene& scene, const ViewSettings& settings, Size size)
 void Camera::orient(const Scene& scene, const ViewSettings& settings) {
     Axes axes = settings.view == View::automatic && !settings.eye ? automatic_axes(scene)
                                                                   : standard_axes(settings.view);
-    world_look_at_ = settings.look_at.value_or(scene.frame().origin);
+    const Vec3d look_at = settings.look_at.value_or(scene.frame().origin);
     if (settings.eye) {
-        axes = {*settings.eye - world_look_at_, {0, 1, 0}};
+        axes = {*settings.eye - look_at, {0, 1, 0}};
         if (!(length(axes.back) > 0.0)) {
             throw UsageError("--eye and --look-at are the same point; move one of them");
         }

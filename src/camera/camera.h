@@ -78,7 +78,6 @@ class Camera {
     /// Of the view: the tangent of half the field of view, or orthographic in scene units.
     double half_height() const { return half_height_; }
     Vec3d world_eye() const { return world_eye_; }
-    Vec3d world_look_at() const { return world_look_at_; }
 
   private:
     struct Basis;
@@ -95,7 +94,7 @@ class Camera {
     RayField field_;
     Projection projection_;
     ScreenBox scene_box_{};
-    Vec3d world_eye_, world_look_at_;
+    Vec3d world_eye_;
 };
 
 void Camera::make_rays(const Lanes<float>& x, const Lanes<float>& y, RayPacket& rays) const {

@@ -12,7 +12,6 @@ struct Parabola {
     Vec2d point, tangent, bend;
 
     Vec2d at(double s) const { return point + tangent * s + bend * (s * s); }
-    Vec2d direction_at(double s) const { return tangent + bend * (2.0 * s); }
     /// Signed, at s = 0: positive where the curve turns clockwise on the screen.
     double curvature() const;
 };

@@ -20,7 +20,6 @@ class Pace {
     void full_took(double ms);
     /// Another scene: what frames took tells nothing any more.
     void forget();
-    double target_ms() const { return target_ms_; }
 
   private:
     static constexpr double kLongest = 40.0;  ///< ms: 25 frames a second
