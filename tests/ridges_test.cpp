@@ -518,7 +518,7 @@ TEST(RidgePattern, IsExactForNormalsThatAreCubic) {
     }
 }
 
-TEST(ShortRidges, AreThoseWhosePiecesInAllAreShorter) {
+TEST(ShortRidges, AreThoseWhosePiecesInAllAreShorterThanADiscIsWide) {
     // Through cells of a grid of 20 x 20 nodes: along row 2 and down column 5, 6 pixels in all, and
     // two pieces that are alone.
     constexpr int kWidth = 20;
@@ -535,7 +535,7 @@ TEST(ShortRidges, AreThoseWhosePiecesInAllAreShorter) {
         std::vector<RidgePiece> pieces = all;
         std::vector<float> lengths;
         for (const RidgePiece& each : pieces) lengths.push_back(length(each.b - each.a));
-        drop_short_ridges(pieces, lengths, kWidth, least);
+        drop_short_ridges(pieces, lengths, kWidth, 0.5F * least);
         lengths.clear();
         for (const RidgePiece& left : pieces) lengths.push_back(length(left.b - left.a));
         return lengths;
@@ -546,10 +546,10 @@ TEST(ShortRidges, AreThoseWhosePiecesInAllAreShorter) {
     EXPECT_TRUE(kept(6.1F).empty());
     // Of pieces that do not count the ridge is no longer, but they stay with it.
     std::vector<RidgePiece> pieces = all;
-    drop_short_ridges(pieces, std::vector{2.0F, 0.0F, 5.5F, 2.0F, 1.5F}, kWidth, 3.4F);
+    drop_short_ridges(pieces, std::vector{2.0F, 0.0F, 5.5F, 2.0F, 1.5F}, kWidth, 1.7F);
     EXPECT_EQ(pieces.size(), 4U);
     pieces = all;
-    drop_short_ridges(pieces, std::vector{2.0F, 0.0F, 5.5F, 2.0F, 1.5F}, kWidth, 3.6F);
+    drop_short_ridges(pieces, std::vector{2.0F, 0.0F, 5.5F, 2.0F, 1.5F}, kWidth, 1.8F);
     EXPECT_EQ(pieces.size(), 1U);
 }
 

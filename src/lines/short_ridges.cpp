@@ -51,7 +51,7 @@ class Groups {
 }  // namespace
 
 void drop_short_ridges(std::vector<RidgePiece>& pieces, std::span<const float> lengths, int width,
-                       float least) {
+                       float radius) {
     const auto count = static_cast<std::uint32_t>(pieces.size());
     EdgeTable table(width);
     Groups groups(count);
@@ -62,7 +62,7 @@ void drop_short_ridges(std::vector<RidgePiece>& pieces, std::span<const float> l
     for (std::uint32_t k = 0; k < count; ++k) sums[groups.root(k)] += lengths[k];
     std::uint32_t kept = 0;
     for (std::uint32_t k = 0; k < count; ++k) {
-        if (sums[groups.root(k)] >= least) pieces[kept++] = pieces[k];
+        if (sums[groups.root(k)] >= 2.0F * radius) pieces[kept++] = pieces[k];
     }
     pieces.resize(kept);
 }

@@ -7,10 +7,11 @@
 
 namespace ink {
 
-/// Drops ridges whose pieces that hang together are shorter in all than `least` pixels, by the
-/// `lengths` that count of each. Pieces come, and stay, row by row and from left to right, of a
-/// grid with rows of `width` nodes.
+/// Drops ridges whose pieces that hang together are shorter in all than the discs across that they
+/// were taken from, of `radius` pixels, by the `lengths` that count of each: a bump is as wide as
+/// long, and no ridge. Pieces come, and stay, row by row and from left to right, of a grid with
+/// rows of `width` nodes.
 void drop_short_ridges(std::vector<RidgePiece>& pieces, std::span<const float> lengths, int width,
-                       float least);
+                       float radius);
 
 }  // namespace ink
