@@ -8,8 +8,6 @@
 #include <cstdio>
 #include <deque>
 #include <functional>
-#include <memory>
-#include <span>
 #include <stdexcept>
 
 #include "session/keep_memory.h"

@@ -4,9 +4,7 @@
 
 #include <atomic>
 #include <chrono>
-#include <cmath>
 #include <stdexcept>
-#include <string>
 #include <thread>
 #include <vector>
 

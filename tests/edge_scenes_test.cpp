@@ -7,7 +7,6 @@
 #include <map>
 #include <numbers>
 #include <optional>
-#include <string>
 #include <variant>
 #include <vector>
 

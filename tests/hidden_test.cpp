@@ -10,7 +10,6 @@
 #include <string>
 #include <vector>
 
-#include "accel/peeled_tracer.h"
 #include "base/error.h"
 #include "lines/dashes.h"
 #include "render/render.h"

@@ -7,7 +7,6 @@
 #include <numbers>
 #include <set>
 #include <utility>
-#include <vector>
 
 #include "line_art.h"
 #include "scenes.h"

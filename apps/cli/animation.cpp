@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-
 namespace inktrace::cli {
 
 bool is_numbered(std::string_view output) { return output.find('#') != std::string_view::npos; }

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <thread>
-#include <type_traits>
 #include <variant>
 #include <vector>
 

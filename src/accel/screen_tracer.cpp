@@ -8,7 +8,6 @@
 #include <cstring>
 #include <numeric>
 #include <optional>
-#include <utility>
 #include <vector>
 
 #include "accel/bounds_pyramid.h"

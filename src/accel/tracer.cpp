@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <mutex>
 #include <utility>
-#include <variant>
 #include <vector>
 
 #include "accel/clusters.h"

@@ -1,7 +1,6 @@
 #include "lines/line_gaps.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdint>
 #include <tuple>

@@ -1,8 +1,6 @@
 #include "lines/parabola.h"
 
-#include <algorithm>
 #include <array>
-#include <cmath>
 
 namespace ink {
 

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <cmath>
 
 #include "lines/chain_lines.h"
 #include "lines/dashes.h"

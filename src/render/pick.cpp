@@ -1,7 +1,6 @@
 #include "render/pick.h"
 
 #include <array>
-#include <cmath>
 #include <variant>
 #include <vector>
 

@@ -1,7 +1,6 @@
 #include "render/specular_paths.h"
 
 #include <algorithm>
-#include <cmath>
 
 namespace ink {
 
