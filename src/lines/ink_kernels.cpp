@@ -123,7 +123,7 @@ class Band {
     Number ax_, ay_, along_x_, along_y_, length_;
 };
 
-/// Adds ink to sixteen pixels of a block from the i-th on.
+/// Adds ink to kStep pixels of a block, from the i-th on.
 HWY_INLINE void add_ink(Number ink, float t, const InkPlanes& planes, std::size_t k, int i,
                         bool& any, bool& full) {
     float* most = planes.coverage[k].data() + i;
@@ -171,8 +171,8 @@ HWY_INLINE void for_each_block(const InkBatch& batch, const Bands& bands, int la
     }
 }
 
-/// Draws stroke `lane` of a batch: `ink_at(x, y, i)` is the ink of 4 x 4 pixels from the i-th on,
-/// (x, y) the centre of the first one.
+/// Draws stroke `lane` of a batch: `ink_at(x, y, i)` is the ink of kStep pixels of a block from the
+/// i-th on, (x, y) the centre of the first one.
 template <class InkAt>
 HWY_INLINE void draw_blocks(const InkBatch& batch, const Bands& bands, int lane,
                             const InkAt& ink_at) {
