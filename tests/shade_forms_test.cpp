@@ -1,4 +1,4 @@
-// Normals that triangles are shaded by, as camera rays give them.
+// Normals that things are shaded by, as camera rays give them without being made.
 
 #include <gtest/gtest.h>
 
@@ -38,6 +38,18 @@ Object random_triangles(unsigned seed, int count, float spread) {
         mesh.corner_normals.push_back(normals);
     }
     return object;
+}
+
+/// Spheres, and glyphs of which some show their back.
+std::vector<Object> random_solids(unsigned seed) {
+    std::mt19937 random(seed);
+    std::vector<Sphere> spheres;
+    for (int k = 0; k < 100; ++k) spheres.push_back({uniform_point(random), 0.15F});
+    std::vector<Object> objects{sphere_object(std::move(spheres))};
+    for (const GlyphKind kind : {GlyphKind::ellipsoid, GlyphKind::frustum, GlyphKind::disc}) {
+        objects.push_back(random_glyphs({.kind = kind, .a = 0.5}, 60, 0.3, random));
+    }
+    return objects;
 }
 
 /// Pixel centres, and what their rays see.
@@ -256,8 +268,7 @@ TEST(ShadeForms, OfFlatMeshesAreTheirFacets) {
     EXPECT_GT(hits, 1000);
 }
 
-TEST(ShadeForms, AreTheSameBitsForRastersAndPacketsOnEveryInstructionSet) {
-    const View view({random_triangles(7, 300, 0.8F)}, {});
+void expect_same_bits(const View& view) {
     const Shaded native = view.shade_raster();
     const auto expect_same = [&](const Shaded& seen) {
         for (std::size_t k = 0; k < seen.points.size(); ++k) {
@@ -276,6 +287,11 @@ TEST(ShadeForms, AreTheSameBitsForRastersAndPacketsOnEveryInstructionSet) {
     on_every_instruction_set([&] { expect_same(view.shade_raster()); });
 }
 
+TEST(ShadeForms, AreTheSameBitsForRastersAndPacketsOnEveryInstructionSet) {
+    expect_same_bits(View({random_triangles(7, 300, 0.8F)}, {}));
+    expect_same_bits(View(random_solids(7), {}));
+}
+
 TEST(ShadeForms, OfARasterEndWithItsPoints) {
     const View view({random_triangles(11, 400, 0.5F)}, {});
     constexpr int kColumns = kSide - 3;
@@ -289,10 +305,54 @@ TEST(ShadeForms, OfARasterEndWithItsPoints) {
     }
 }
 
-TEST(ShadeForms, AreOfTrianglesAlone) {
-    EXPECT_TRUE(View({random_triangles(8, 10, 0.5F)}, {}).frame().shades_triangles());
+void expect_seen_as_by_rays(const View& view) {
+    const Shaded seen = view.shade_raster();
+    const auto tracer = view.frame().tile_tracer();
+    tracer->enter({0, 0, kSide, kSide});
+    int hits = 0;
+    for (std::size_t k = 0; k < seen.points.size(); ++k) {
+        RayPacket rays;
+        HitPacket by_ray;
+        view.camera().make_rays(seen.points[k].x, seen.points[k].y, rays);
+        tracer->intersect({&seen.points[k], 1}, {&rays, 1}, {&by_ray, 1});
+        for (int i = 0; i < kLanes; ++i) {
+            EXPECT_EQ(seen.hits[k].object[i], by_ray.object[i]);
+            EXPECT_EQ(seen.hits[k].t[i], by_ray.t[i]);
+            const Vec3d normal = normal_of(seen.normals[k], i);
+            EXPECT_EQ(facet_of(seen.hits[k], i), normal);
+            if (by_ray.object[i] == kNoObject) {
+                EXPECT_EQ(length(normal), 0.0);
+                continue;
+            }
+            ++hits;
+            EXPECT_EQ(seen.hits[k].primitive[i], by_ray.primitive[i]);
+            const Vec3d dir{rays.dir_x[i], rays.dir_y[i], rays.dir_z[i]};
+            const Vec3d origin{rays.origin_x[i], rays.origin_y[i], rays.origin_z[i]};
+            const double t = by_ray.t[i];
+            EXPECT_LT(length(place_of(seen.places[k], i) - (origin + dir * t)), 1e-6);
+            const Vec3d own = facet_of(by_ray, i);
+            const double side = dot(own, dir) > 0.0 ? -1.0 : 1.0;
+            // Of an edge's grazing ray, rounding decides on which side it passes.
+            if (std::abs(dot(normalize(own), normalize(dir))) < 1e-5) continue;
+            EXPECT_LT(angle(normal, own * side), 1e-5);
+            EXPECT_NEAR(length(normal), 1.0, 1e-6);
+        }
+    }
+    EXPECT_GT(hits, 1000);
+}
+
+TEST(ShadeForms, OfSpheresAndGlyphsAreWhatTheirRaysSee) {
+    expect_seen_as_by_rays(View(random_solids(12), {}));
+    ViewSettings parallel;
+    parallel.orthographic = 2.0;
+    expect_seen_as_by_rays(View(random_solids(13), parallel));
+}
+
+TEST(ShadeForms, AreOfTrianglesAloneOrOfNone) {
+    EXPECT_TRUE(View({random_triangles(8, 10, 0.5F)}, {}).frame().sees_without_rays());
+    EXPECT_TRUE(View(random_solids(8), {}).frame().sees_without_rays());
     const View mixed({random_triangles(8, 10, 0.5F), sphere_object({{{0, 0, 0}, 0.5F}})}, {});
-    EXPECT_FALSE(mixed.frame().shades_triangles());
+    EXPECT_FALSE(mixed.frame().sees_without_rays());
 }
 
 }  // namespace

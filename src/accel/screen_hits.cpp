@@ -50,14 +50,9 @@ HWY_INLINE Vectors vectors(const HitNumbers& hit, std::size_t first) {
 
 /// The hits of a sphere or triangle, from their place in the scene.
 HWY_INLINE void resolve_placed(const ScreenPacket& packet, const HitNumbers& hit,
-                               const RayPacket& rays, int i, Number t, Mask lanes, Found& found) {
+                               const Vectors& place, Mask lanes, Found& found) {
     if (packet.kind == ClusterKind::solids) return found.put_normal(lanes, vectors(hit, 3));
-    const Vectors from = vectors(hit, 0);
-    const auto at = [&](const Lanes<float>& origin, const Lanes<float>& dir, Number from_origin) {
-        return hn::Sub(hn::Add(load(origin, i), hn::Mul(t, load(dir, i))), from_origin);
-    };
-    const Vectors p{at(rays.origin_x, rays.dir_x, from.x), at(rays.origin_y, rays.dir_y, from.y),
-                    at(rays.origin_z, rays.dir_z, from.z)};
+    const Vectors p = place - vectors(hit, 0);
     if (packet.kind == ClusterKind::spheres) return found.put_normal(lanes, p);
     const auto zero = hn::Zero(kFloats);
     const auto one = set(1.0F);
@@ -119,36 +114,89 @@ HWY_INLINE void resolve_glyph(const ScreenPacket& packet, int lane, const Front&
 
 /// The lanes of a hit packet, from the i-th on, that one primitive won.
 HWY_INLINE void resolve_winner(const ScreenPacket& packet, int lane, const Front& front,
-                               const RayPacket& rays, int i, Number t, Mask lanes, Found& found) {
+                               const Vectors& place, int i, Mask lanes, Found& found) {
     if (packet.kind == ClusterKind::glyphs) {
         resolve_glyph(packet, lane, front, i, lanes, found);
     } else {
         const HitNumbers& hit = packet.hit[static_cast<std::size_t>(lane)];
-        resolve_placed(packet, hit, rays, i, t, lanes, found);
+        resolve_placed(packet, hit, place, lanes, found);
     }
     const auto own = hn::RebindMask(kWords, lanes);
     found.object = hn::IfThenElse(own, hn::Set(kWords, packet.object), found.object);
     found.primitive = hn::IfThenElse(own, hn::Set(kWords, packet.primitive[lane]), found.primitive);
 }
 
+/// Which lanes of a front hit anything.
+HWY_INLINE Mask hit_lanes_of(Number depth) {
+    return hn::And(hn::Lt(depth, set(kInfinity)), hn::Gt(depth, set(-kInfinity)));
+}
+
+/// Distances along rays, which start where depth is 0.
+HWY_INLINE Number distance(const Front& front, Number depth, int i) {
+    return hn::Div(depth, hn::Sqrt(load(front.foreshortening, i)));
+}
+
+/// What the lanes that hit anything found at their places.
+HWY_INLINE Found find_winners(const Front& front, const ScreenPacket* packets, const Vectors& place,
+                              int i, Mask hit) {
+    const auto winners = load(front.winner, i);
+    Found found;
+    for (LaneBits left = bits_of(hit); left != 0;) {
+        const std::uint32_t winner = front.winner[i + std::countr_zero(left)];
+        const auto won = hn::RebindMask(kFloats, hn::Eq(winners, hn::Set(kWords, winner)));
+        left &= ~bits_of(won);
+        resolve_winner(packets[winner / kLanes], static_cast<int>(winner % kLanes), front, place, i,
+                       hn::And(won, hit), found);
+    }
+    return found;
+}
+
 void resolve_front(const Front& front, const RayPacket& rays, const ScreenPacket* packets,
                    HitPacket& hits) {
     for (int i = 0; i < kLanes; i += kStep) {
         const auto depth = load(front.depth, i);
-        const auto hit = hn::And(hn::Lt(depth, set(kInfinity)), hn::Gt(depth, set(-kInfinity)));
-        // Rays start where depth is 0.
-        const auto t = hn::Div(depth, hn::Sqrt(load(front.foreshortening, i)));
+        const auto hit = hit_lanes_of(depth);
+        const auto t = distance(front, depth, i);
         store(hn::IfThenElse(hit, t, set(kInfinity)), hits.t, i);
-        const auto winners = load(front.winner, i);
-        Found found;
-        for (LaneBits left = bits_of(hit); left != 0;) {
-            const std::uint32_t winner = front.winner[i + std::countr_zero(left)];
-            const auto won = hn::RebindMask(kFloats, hn::Eq(winners, hn::Set(kWords, winner)));
-            left &= ~bits_of(won);
-            resolve_winner(packets[winner / kLanes], static_cast<int>(winner % kLanes), front, rays,
-                           i, t, hn::And(won, hit), found);
+        const auto at = [&](const Lanes<float>& origin, const Lanes<float>& dir) {
+            return hn::Add(load(origin, i), hn::Mul(t, load(dir, i)));
+        };
+        const Vectors place{at(rays.origin_x, rays.dir_x), at(rays.origin_y, rays.dir_y),
+                            at(rays.origin_z, rays.dir_z)};
+        find_winners(front, packets, place, i, hit).put(i, hits);
+    }
+}
+
+/// Of unit length, on the viewer's side; zero where nothing was hit.
+HWY_INLINE Vectors facing(const Vectors& normal, const Vectors& ray) {
+    const auto one = set(1.0F);
+    const auto away = hn::Gt(dot(normal, ray), hn::Zero(kFloats));
+    const auto squared = dot(normal, normal);
+    const auto scale = hn::Div(hn::IfThenElse(away, hn::Neg(one), one), hn::Sqrt(squared));
+    return scaled(normal, hn::IfThenElseZero(hn::Gt(squared, hn::Zero(kFloats)), scale));
+}
+
+void see_solid_fronts(const Basis& basis, std::span<const Front> fronts,
+                      const ScreenPacket* packets, HitPacket* hits, NormalPacket* normals,
+                      PlacePacket* places) {
+    const RayFloats rays(basis);
+    for (std::size_t k = 0; k < fronts.size(); ++k) {
+        const Front& front = fronts[k];
+        for (int i = 0; i < kLanes; i += kStep) {
+            const auto depth = load(front.depth, i);
+            const auto hit = hit_lanes_of(depth);
+            const auto qx = load(front.x, i);
+            const auto qy = load(front.y, i);
+            const Vectors place = rays.place(qx, qy, hn::IfThenElseZero(hit, depth));
+            const Found found = find_winners(front, packets, place, i, hit);
+            const Vectors normal = facing(found.normal, rays.direction(qx, qy));
+            store(hn::IfThenElse(hit, distance(front, depth, i), set(kInfinity)), hits[k].t, i);
+            store(normal, hits[k].normal_x, hits[k].normal_y, hits[k].normal_z, i);
+            store(normal, normals[k].x, normals[k].y, normals[k].z, i);
+            store(found.object, hits[k].object, i);
+            store(found.primitive, hits[k].primitive, i);
+            if (places != nullptr) store(place, places[k].x, places[k].y, places[k].z, i);
         }
-        found.put(i, hits);
     }
 }
 
@@ -156,10 +204,9 @@ void identify_front(const Front& front, const ScreenPacket* packets, HitPacket& 
     LaneBits hit_lanes = 0;
     for (int i = 0; i < kLanes; i += kStep) {
         const auto depth = load(front.depth, i);
-        const auto hit = hn::And(hn::Lt(depth, set(kInfinity)), hn::Gt(depth, set(-kInfinity)));
+        const auto hit = hit_lanes_of(depth);
         hit_lanes |= bits_of(hit) << static_cast<unsigned>(i);
-        const auto t = hn::Div(depth, hn::Sqrt(load(front.foreshortening, i)));
-        store(hn::IfThenElse(hit, t, set(kInfinity)), hits.t, i);
+        store(hn::IfThenElse(hit, distance(front, depth, i), set(kInfinity)), hits.t, i);
     }
     for (int i = 0; i < kLanes; ++i) {
         const bool hit = (hit_lanes >> static_cast<unsigned>(i) & 1U) != 0;
@@ -179,6 +226,7 @@ namespace ink {
 
 HWY_EXPORT(identify_front);
 HWY_EXPORT(resolve_front);
+HWY_EXPORT(see_solid_fronts);
 
 void identify(const Front& front, const ScreenPacket* packets, HitPacket& hits) {
     HWY_DYNAMIC_DISPATCH(identify_front)(front, packets, hits);
@@ -187,6 +235,11 @@ void identify(const Front& front, const ScreenPacket* packets, HitPacket& hits) 
 void resolve(const Front& front, const RayPacket& rays, const ScreenPacket* packets,
              HitPacket& hits) {
     HWY_DYNAMIC_DISPATCH(resolve_front)(front, rays, packets, hits);
+}
+
+void see(const Basis& basis, std::span<const Front> fronts, const ScreenPacket* packets,
+         HitPacket* hits, NormalPacket* normals, PlacePacket* places) {
+    HWY_DYNAMIC_DISPATCH(see_solid_fronts)(basis, fronts, packets, hits, normals, places);
 }
 
 }  // namespace ink

@@ -85,6 +85,9 @@ void resolve(const Front& front, const RayPacket& rays, const ScreenPacket* pack
 /// unless these are null.
 void see(const Basis& basis, std::span<const Front> fronts, const PacketShades* shades,
          HitPacket* hits, NormalPacket* normals, PlacePacket* places);
+/// The same of fronts whose hits are anything else, of which t is told in any case.
+void see(const Basis& basis, std::span<const Front> fronts, const ScreenPacket* packets,
+         HitPacket* hits, NormalPacket* normals, PlacePacket* places);
 /// The front as hits without normals and barycentric coordinates, which are left as they are.
 void identify(const Front& front, const ScreenPacket* packets, HitPacket& hits);
 

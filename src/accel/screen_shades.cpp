@@ -1,4 +1,3 @@
-#include <array>
 #include <bit>
 
 #include "accel/screen_kernels.h"
@@ -59,50 +58,6 @@ struct Seen {
         return {hn::IfThenElse(use, hn::Mul(normal.x, scale), facet.x),
                 hn::IfThenElse(use, hn::Mul(normal.y, scale), facet.y),
                 hn::IfThenElse(use, hn::Mul(normal.z, scale), facet.z)};
-    }
-};
-
-HWY_INLINE void store(const Vectors& v, Lanes<float>& x, Lanes<float>& y, Lanes<float>& z, int i) {
-    store(v.x, x, i);
-    store(v.y, y, i);
-    store(v.z, z, i);
-}
-
-/// Rays of a projection, rounded to floats: at a depth, the one through q is at start + (right q.x
-/// + down q.y) (origin_step + slope_step depth) + forward depth.
-struct RayFloats {
-    float origin_step, slope_step;
-    std::array<float, 3> start, right, down, forward;
-
-    explicit RayFloats(const Basis& b)
-        : origin_step(static_cast<float>(b.origin_step)),
-          slope_step(static_cast<float>(b.slope_step)),
-          start(rounded(b.sx, b.sy, b.sz)),
-          right(rounded(b.rx, b.ry, b.rz)),
-          down(rounded(b.dx, b.dy, b.dz)),
-          forward(rounded(b.fx, b.fy, b.fz)) {}
-
-    static std::array<float, 3> rounded(double x, double y, double z) {
-        return {static_cast<float>(x), static_cast<float>(y), static_cast<float>(z)};
-    }
-
-    HWY_INLINE Vectors place(Number qx, Number qy, Number depth) const {
-        const auto pixel = hn::Add(set(origin_step), hn::Mul(depth, set(slope_step)));
-        const auto x = hn::Mul(qx, pixel);
-        const auto y = hn::Mul(qy, pixel);
-        const auto along_axis = [&](std::size_t axis) {
-            const auto across = hn::Add(hn::Mul(x, set(right[axis])), hn::Mul(y, set(down[axis])));
-            return hn::Add(hn::Add(set(start[axis]), hn::Mul(depth, set(forward[axis]))), across);
-        };
-        return {along_axis(0), along_axis(1), along_axis(2)};
-    }
-
-    /// From where the ray starts.
-    HWY_INLINE Number distance(Number qx, Number qy, Number depth) const {
-        const auto x = hn::Mul(qx, set(slope_step));
-        const auto y = hn::Mul(qy, set(slope_step));
-        const auto squared = hn::Add(hn::Add(set(1.0F), hn::Mul(x, x)), hn::Mul(y, y));
-        return hn::Mul(depth, hn::Sqrt(squared));
     }
 };
 

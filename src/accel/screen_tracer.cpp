@@ -28,6 +28,8 @@ struct View {
     View(const Clusters& all, const Projection& seen_by)
         : clusters(all), projection(seen_by), basis(seen_by), pyramid(all, basis) {
         const std::size_t count = all.clusters.size();
+        triangles = static_cast<std::size_t>(std::ranges::count(
+            all.clusters, ClusterKind::triangles, [](const Cluster& one) { return one.kind; }));
         if (count > 0 && count <= ClusterBands::kMost) {
             bands.emplace(pyramid, count, seen_by.centre);
         }
@@ -38,6 +40,9 @@ struct View {
     Basis basis;
     BoundsPyramid pyramid;
     std::optional<ClusterBands> bands;  ///< if there are not too many clusters
+    std::size_t triangles = 0;          ///< clusters of them
+
+    bool triangles_only() const { return triangles == clusters.clusters.size(); }
 
     Window window(const ScreenBox& box) const {
         const Vec2f centre = projection.centre;
@@ -80,12 +85,19 @@ class ScreenTileTracer final : public TileTracer {
             ink::measure(fronts_[first + k], store_.packets(), store_.sides(), borders[k]);
         }
     }
-    void want_shades() override { store_.want_shades(); }
+    void want_shades() override {
+        if (view_.triangles_only()) store_.want_shades();
+    }
     void want_points_only() override { store_.want_points_only(); }
     void see(std::size_t first, std::span<HitPacket> hits, std::span<NormalPacket> normals,
              std::span<PlacePacket> places) override {
-        ink::see(view_.basis, std::span(fronts_).subspan(first, hits.size()), store_.shades(),
-                 hits.data(), normals.data(), places.empty() ? nullptr : places.data());
+        const std::span<const Front> fronts = std::span(fronts_).subspan(first, hits.size());
+        PlacePacket* const to = places.empty() ? nullptr : places.data();
+        if (view_.triangles_only()) {
+            ink::see(view_.basis, fronts, store_.shades(), hits.data(), normals.data(), to);
+        } else {
+            ink::see(view_.basis, fronts, store_.packets(), hits.data(), normals.data(), to);
+        }
     }
     bool find_sides(std::size_t first, std::span<SidesPacket> sides) override {
         for (std::size_t k = 0; k < sides.size(); ++k) {
@@ -330,10 +342,8 @@ class ScreenFrameTracer final : public FrameTracer {
         return !view_.bands || view_.bands->reach(view_.window(box));
     }
     bool measures_borders() const override { return true; }
-    bool shades_triangles() const override {
-        return std::ranges::all_of(view_.clusters.clusters, [](const Cluster& cluster) {
-            return cluster.kind == ClusterKind::triangles;
-        });
+    bool sees_without_rays() const override {
+        return view_.triangles_only() || view_.triangles == 0;
     }
 
     bool is_suited(const Window& part) const;

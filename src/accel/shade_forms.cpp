@@ -26,9 +26,6 @@ HWY_INLINE void store(const Vectors& v, ShadeLanes& lanes, std::size_t first, in
 HWY_INLINE Vectors load(const Points& points, int first) {
     return {load(points.x, first), load(points.y, first), load(points.z, first)};
 }
-HWY_INLINE Vectors scaled(const Vectors& a, Number by) {
-    return {hn::Mul(a.x, by), hn::Mul(a.y, by), hn::Mul(a.z, by)};
-}
 
 /// Of unit length, on the side that is seen. Zero without an area.
 HWY_INLINE Vectors facet(const TriangleLanes& triangles, Number area, int i) {

@@ -146,8 +146,8 @@ class TileTracer {
     /// After `find`, of packets `first` and on, without rays: the hits but for barycentric
     /// coordinates, with normals that are unit and face the viewer; the normals to shade them by,
     /// interpolated where a mesh has normals at its corners; and where they lie, unless `places`
-    /// is empty, in which case t is left out, too. Only if the frame `shades_triangles`, and after
-    /// `want_shades`.
+    /// is empty, in which case t of triangles is left out, too. Only if the frame
+    /// `sees_without_rays`, and after `want_shades`.
     virtual void want_shades() {}
     /// Takes both wishes back.
     virtual void want_points_only() {}
@@ -197,8 +197,9 @@ class FrameTracer {
     virtual bool may_see(const ScreenBox& /*box*/) const { return true; }
     /// Whether its tile tracers can tell how far points are from the borders of triangles.
     virtual bool measures_borders() const { return false; }
-    /// Whether there is nothing but triangles, and they can tell by which normals to shade these.
-    virtual bool shades_triangles() const { return false; }
+    /// Whether they can tell hits and the normals to shade them by without rays: where there is
+    /// nothing but triangles, or none.
+    virtual bool sees_without_rays() const { return false; }
 };
 
 /// Finds the first surface along rays. Safe to use from many threads.

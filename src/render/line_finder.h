@@ -126,7 +126,7 @@ class LineFinder {
             }
         }
         takes_shades_ = front && can_take_shades() && sampler_.want_shades();
-        fills_grid_ = !takes_shades_ || crosses_faces();
+        fills_grid_ = !takes_shades_ || !edges.has_meshes || crosses_faces();
     }
 
     MeshQueries mesh_queries();

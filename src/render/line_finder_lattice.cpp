@@ -63,7 +63,7 @@ void LineFinder::make_room() {
     // Strips are cut into so many blocks.
     const std::size_t cut = kLanes / kBlockSide * lattice_.strips();
     normals_.resize(hits_.size() + cut);
-    if (takes_shades_) places_.resize(normals_.size());
+    if (takes_shades_ && !ids_only_) places_.resize(normals_.size());
     if (fills_grid_) return;
     ids_.resize(normals_.size());
     surfaces_.resize(normals_.size());
@@ -85,8 +85,9 @@ bool LineFinder::can_take_shades() const {
 void LineFinder::take(std::size_t first, std::size_t count) {
     const auto hits = std::span(hits_).subspan(first, count);
     if (takes_shades_) {
-        sampler_.take_shades(first, hits, std::span(normals_).subspan(first, count),
-                             std::span(places_).subspan(first, count));
+        const auto places =
+            ids_only_ ? std::span<PlacePacket>() : std::span(places_).subspan(first, count);
+        sampler_.take_shades(first, hits, std::span(normals_).subspan(first, count), places);
     } else {
         sampler_.take_hits(first, hits);
         for (const HitPacket& packet : hits) edges_.pipeline.shader.prefetch(packet);
@@ -269,7 +270,10 @@ void LineFinder::shade(std::size_t first, std::size_t count) {
     const Pipeline& pipeline = edges_.pipeline;
     for (std::size_t k = first; k < first + count; ++k) {
         if (takes_shades_) {
-            seen_[k] = pipeline.shader.shade(hits_[k], normals_[k], colors_[k]) ? 1 : 0;
+            seen_[k] =
+                pipeline.shader.shade(hits_[k], normals_[k], lattice_[k].is_strip(), colors_[k])
+                    ? 1
+                    : 0;
             continue;
         }
         const SurfacePacket surface{sampler_.packets()[k], sampler_.points()[k], hits_[k],

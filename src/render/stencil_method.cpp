@@ -153,7 +153,7 @@ void trace_pixels(const Stencils& stencils, Workspace& work) {
             const Block block = work.blocks[first + k];
             const bool seen =
                 work.takes_shades
-                    ? shader.shade(work.hits[k], work.normals[k], colors)
+                    ? shader.shade(work.hits[k], work.normals[k], block.is_strip(), colors)
                     : shader.shade(work.sampler.packets()[first + k],
                                    work.sampler.points()[first + k], work.hits[k], colors);
             if (seen) {

@@ -213,7 +213,7 @@ void Sampler::take_hits(std::size_t first, std::span<HitPacket> hits) {
 }
 
 bool Sampler::want_shades() {
-    wants_shades_ = shades_triangles_;
+    wants_shades_ = sees_without_rays_;
     if (wants_shades_) tracer_->want_shades();
     return wants_shades_;
 }

@@ -31,7 +31,7 @@ class Sampler {
   public:
     Sampler(const FrameTracer& frame, const Camera& camera, int per_pixel = 1)
         : tracer_(frame.tile_tracer()),
-          shades_triangles_(frame.shades_triangles()),
+          sees_without_rays_(frame.sees_without_rays()),
           camera_(camera),
           spacing_(1.0F / static_cast<float>(per_pixel)) {}
 
@@ -113,7 +113,7 @@ class Sampler {
     void sort_by_place(std::span<const Vec2f> points, const ScreenBox& box);
 
     std::unique_ptr<TileTracer> tracer_;
-    bool shades_triangles_;
+    bool sees_without_rays_;
     const Camera& camera_;
     float spacing_;
     ScreenBox area_{kInfinity, kInfinity, -kInfinity, -kInfinity};

@@ -21,6 +21,11 @@ class AmbientOcclusion {
   public:
     virtual ~AmbientOcclusion() = default;
     virtual void openness(const SurfacePacket& surface, Lanes<float>& open) const = 0;
+    /// Whether there is nothing but balls, of which hits and normals tell enough.
+    virtual bool needs_normals_only() const = 0;
+    /// If so, of a block of points, or a strip.
+    virtual void openness(const HitPacket& hits, const NormalPacket& normals, bool is_strip,
+                          Lanes<float>& open) const = 0;
 };
 
 /// Of balls that are small on the picture: whether each point is computed, or they have nodes, too.

@@ -75,10 +75,31 @@ std::optional<float> between_two(const NormalPacket& normals, const Lanes<float>
 class SeenBake final : public AmbientOcclusion {
   public:
     SeenBake(const AmbientBake::Impl& bake, const Camera& camera, SmallBalls small)
-        : bake_(bake), footprints_(camera), small_(small) {}
+        : bake_(bake),
+          footprints_(camera),
+          small_(small),
+          balls_only_(std::ranges::all_of(bake.scene.objects(), [](const Object& object) {
+              return std::holds_alternative<Spheres>(object.shape);
+          })) {}
 
     void openness(const SurfacePacket& surface, Lanes<float>& open) const override {
-        const HitPacket& hits = surface.hits;
+        const PointPacket& at = surface.points;
+        const bool is_block = at.x[kBlockSide] == at.x[0] && at.y[1] == at.y[0];
+        find(surface.hits, surface.normals, is_block, open,
+             [&](int i) { return at_other(surface, i); });
+    }
+
+    bool needs_normals_only() const override { return balls_only_; }
+    void openness(const HitPacket& hits, const NormalPacket& normals, bool is_strip,
+                  Lanes<float>& open) const override {
+        find(hits, normals, !is_strip, open, [](int /*lane*/) { return 1.0F; });
+    }
+
+  private:
+    /// `of_other(i)` tells of a lane that sees no ball.
+    template <class Other>
+    void find(const HitPacket& hits, const NormalPacket& normals, bool is_block, Lanes<float>& open,
+              const Other& of_other) const {
         // Primitive by primitive: what there is about a ball stays in the nearest cache.
         std::uint32_t rest = (1U << kLanes) - 1U;
         while (rest != 0) {
@@ -88,24 +109,22 @@ class SeenBake final : public AmbientOcclusion {
             if (hits.object[first] == kNoObject) {
                 for_lanes(own, [&](int i) { open[i] = 1.0F; });
             } else if (std::holds_alternative<Spheres>(shape_of(hits, first))) {
-                find_on_ball(surface, own, open);
+                find_on_ball(hits, normals, is_block, own, open);
             } else {
-                for_lanes(own, [&](int i) { open[i] = at(surface, i); });
+                for_lanes(own, [&](int i) { open[i] = of_other(i); });
             }
         }
     }
 
-  private:
     /// Of lanes that see one ball. Where every point is computed, on small balls, what lies between
     /// two pixels that nearly agree is not.
-    void find_on_ball(const SurfacePacket& surface, std::uint32_t own, Lanes<float>& open) const {
-        const HitPacket& hits = surface.hits;
+    void find_on_ball(const HitPacket& hits, const NormalPacket& normals, bool is_block,
+                      std::uint32_t own, Lanes<float>& open) const {
         const int any = std::countr_zero(own);
         const std::uint32_t primitive = hits.primitive[any];
         const Sphere ball = std::get<Spheres>(shape_of(hits, any)).at(primitive);
         const std::size_t ball_number = bake_.first_ball[hits.object[any]] + primitive;
         const float radius_px = ball.radius / footprints_.at(ball.centre);
-        const NormalPacket& normals = surface.normals;
         if (const auto grid = grid_of(radius_px)) {
             bake_.on_ball(ball, ball_number, *grid, own, normals, open);
             return;
@@ -113,9 +132,6 @@ class SeenBake final : public AmbientOcclusion {
         const auto at_point = [&](int i) {
             return bake_.at_point(ball, ball_number, {normals.x[i], normals.y[i], normals.z[i]});
         };
-        const PointPacket& at_screen = surface.points;
-        const bool is_block =
-            at_screen.x[kBlockSide] == at_screen.x[0] && at_screen.y[1] == at_screen.y[0];
         const std::uint32_t spared = is_block ? kBetween : kBetweenInStrip;
         const std::uint32_t between = bake_.strings ? 0U : own & spared;
         for_lanes(own & ~between, [&](int i) { open[i] = at_point(i); });
@@ -153,7 +169,7 @@ class SeenBake final : public AmbientOcclusion {
     }
 
     /// Of anything but balls.
-    float at(const SurfacePacket& surface, int i) const {
+    float at_other(const SurfacePacket& surface, int i) const {
         const HitPacket& hits = surface.hits;
         const Shape& shape = shape_of(hits, i);
         const Vec3f normal{surface.normals.x[i], surface.normals.y[i], surface.normals.z[i]};
@@ -173,6 +189,7 @@ class SeenBake final : public AmbientOcclusion {
     const AmbientBake::Impl& bake_;
     Footprints footprints_;
     SmallBalls small_;
+    bool balls_only_;
 };
 
 }  // namespace

@@ -25,29 +25,69 @@ INKTRACE_INLINE float along(const NormalPacket& normals, int i, Vec3f d) {
     return normals.x[i] * d.x + normals.y[i] * d.y + normals.z[i] * d.z;
 }
 
-/// What the sky and all lights give to surfaces that lie open to them; the arithmetic is that of
-/// add_sky and add_diffuse. A sum of its own, which the compiler knows to be apart from the
-/// normals.
-INKTRACE_INLINE ColorLanes open_light(const LightRig& lights, const NormalPacket& normals) {
+INKTRACE_INLINE void multiply_lanes(const ColorLanes& a, const ColorLanes& b, ColorLanes& product) {
+    for (int i = 0; i < kLanes; ++i) {
+        product.r[i] = a.r[i] * b.r[i];
+        product.g[i] = a.g[i] * b.g[i];
+        product.b[i] = a.b[i] * b.b[i];
+    }
+}
+
+/// Everything is open.
+struct AllOpen {
+    float operator[](int /*lane*/) const { return 1.0F; }
+};
+
+INKTRACE_INLINE Color color_at(Color color, int /*lane*/) { return color; }
+INKTRACE_INLINE Color color_at(const ColorLanes& colors, int i) {
+    return {colors.r[i], colors.g[i], colors.b[i]};
+}
+
+/// What the sky and all lights give to surfaces that scatter it, as far as they lie open; the
+/// arithmetic is that of add_sky and add_diffuse. A sum of its own, which the compiler knows to be
+/// apart from the normals.
+template <class Openness>
+INKTRACE_INLINE ColorLanes open_light(const LightRig& lights, const NormalPacket& normals,
+                                      const Openness& open) {
     ColorLanes sum;
     const SkyLight sky = lights.sky;
     for (int i = 0; i < kLanes; ++i) {
         const float up = along(normals, i, sky.up);
-        sum.r[i] = sky.middle.r + sky.slope.r * up;
-        sum.g[i] = sky.middle.g + sky.slope.g * up;
-        sum.b[i] = sky.middle.b + sky.slope.b * up;
+        sum.r[i] = (sky.middle.r + sky.slope.r * up) * open[i];
+        sum.g[i] = (sky.middle.g + sky.slope.g * up) * open[i];
+        sum.b[i] = (sky.middle.b + sky.slope.b * up) * open[i];
     }
     for (const LightSource& light : lights.sources) {
         const Vec3f from = light.from;
         const Color color = light.color;
         for (int i = 0; i < kLanes; ++i) {
-            const float falls = std::max(along(normals, i, from), 0.0F);
+            const float falls = std::max(along(normals, i, from), 0.0F) * cleft_light(open[i]);
             sum.r[i] += color.r * falls;
             sum.g[i] += color.g * falls;
             sum.b[i] += color.b * falls;
         }
     }
     return sum;
+}
+
+INKTRACE_INLINE ColorLanes open_light(const LightRig& lights, const NormalPacket& normals,
+                                      const Lanes<float>* open) {
+    return open == nullptr ? open_light(lights, normals, AllOpen{})
+                           : open_light(lights, normals, *open);
+}
+
+/// What hits get, and what the background shows elsewhere.
+template <class Base>
+INKTRACE_INLINE void put_pixels(const HitPacket& hits, const Base& base, const ColorLanes& light,
+                                const ColorPacket& background, ColorPacket& __restrict colors) {
+    for (int i = 0; i < kLanes; ++i) {
+        const bool miss = hits.object[i] == kNoObject;
+        const Color own = color_at(base, i);
+        colors.r[i] = miss ? background.r[i] : own.r * light.r[i];
+        colors.g[i] = miss ? background.g[i] : own.g * light.g[i];
+        colors.b[i] = miss ? background.b[i] : own.b * light.b[i];
+        colors.a[i] = miss ? background.a[i] : 1.0F;
+    }
 }
 
 }  // namespace
@@ -65,27 +105,22 @@ void add_diffuse(const LightSource& light, const SurfacePacket& surface,
 }
 
 INKTRACE_MULTIVERSION
-void shade_open(const LightRig& lights, const NormalPacket& normals, const ColorLanes& base,
-                ColorLanes& lit) {
-    const ColorLanes sum = open_light(lights, normals);
-    for (int i = 0; i < kLanes; ++i) {
-        lit.r[i] = base.r[i] * sum.r[i];
-        lit.g[i] = base.g[i] * sum.g[i];
-        lit.b[i] = base.b[i] * sum.b[i];
-    }
+void shade_open(const LightRig& lights, const NormalPacket& normals, const Lanes<float>* open,
+                const ColorLanes& base, ColorLanes& lit) {
+    multiply_lanes(base, open_light(lights, normals, open), lit);
+}
+
+INKTRACE_MULTIVERSION
+void shade_open(const LightRig& lights, const HitPacket& hits, const NormalPacket& normals,
+                const Lanes<float>* open, const ColorLanes& base, const ColorPacket& background,
+                ColorPacket& __restrict colors) {
+    put_pixels(hits, base, open_light(lights, normals, open), background, colors);
 }
 
 INKTRACE_MULTIVERSION
 void shade_open(const LightRig& lights, const HitPacket& hits, const NormalPacket& normals,
                 Color base, const ColorPacket& background, ColorPacket& __restrict colors) {
-    const ColorLanes sum = open_light(lights, normals);
-    for (int i = 0; i < kLanes; ++i) {
-        const bool miss = hits.object[i] == kNoObject;
-        colors.r[i] = miss ? background.r[i] : base.r * sum.r[i];
-        colors.g[i] = miss ? background.g[i] : base.g * sum.g[i];
-        colors.b[i] = miss ? background.b[i] : base.b * sum.b[i];
-        colors.a[i] = miss ? background.a[i] : 1.0F;
-    }
+    put_pixels(hits, base, open_light(lights, normals, AllOpen{}), background, colors);
 }
 
 INKTRACE_MULTIVERSION
@@ -174,11 +209,7 @@ void shade_flat(const ColorLanes& base, const Lanes<float>& open, ColorLanes& li
 
 INKTRACE_MULTIVERSION
 void multiply(const ColorLanes& base, const ColorLanes& scattered, ColorLanes& lit) {
-    for (int i = 0; i < kLanes; ++i) {
-        lit.r[i] = base.r[i] * scattered.r[i];
-        lit.g[i] = base.g[i] * scattered.g[i];
-        lit.b[i] = base.b[i] * scattered.b[i];
-    }
+    multiply_lanes(base, scattered, lit);
 }
 
 INKTRACE_MULTIVERSION

@@ -5,6 +5,7 @@
 #include "accel/tracer.h"
 #include "base/color.h"
 #include "base/lanes.h"
+#include "base/multiversion.h"
 #include "shading/lights.h"
 
 namespace ink {
@@ -37,17 +38,29 @@ struct SurfacePacket {
     const NormalPacket& normals;
 };
 
+/// Share of a light that finds its way to a surface that lies open to so much of the sky: rays that
+/// graze the scene on their way to a cleft mostly do not arrive.
+INKTRACE_INLINE float cleft_light(float open) {
+    constexpr float kCleftShade = 0.5F;
+    return 1.0F - kCleftShade * (1.0F - open);
+}
+
 /// Adds what a light gives to the scattered light: colour * max(n . l, 0), as far as `visible`.
 void add_diffuse(const LightSource& light, const SurfacePacket& surface,
                  const Lanes<float>& visible, ColorLanes& scattered);
 
-/// What the sky and all lights give to surfaces that lie open to them, in one go, times the
-/// surface's colour. No light may be a disc.
-void shade_open(const LightRig& lights, const NormalPacket& normals, const ColorLanes& base,
-                ColorLanes& lit);
+/// What the sky and all lights give to surfaces, in one go, times the surface's colour: of the sky
+/// as far as they lie `open` to it, of the lights cleft_light; null: all do. No light may be a
+/// disc.
+void shade_open(const LightRig& lights, const NormalPacket& normals, const Lanes<float>* open,
+                const ColorLanes& base, ColorLanes& lit);
 
-/// The same for surfaces of one colour, straight to pixels; rays that hit nothing get the
-/// background.
+/// The same straight to pixels; rays that hit nothing get the background.
+void shade_open(const LightRig& lights, const HitPacket& hits, const NormalPacket& normals,
+                const Lanes<float>* open, const ColorLanes& base, const ColorPacket& background,
+                ColorPacket& colors);
+
+/// The same of surfaces of one colour that all lie open.
 void shade_open(const LightRig& lights, const HitPacket& hits, const NormalPacket& normals,
                 Color base, const ColorPacket& background, ColorPacket& colors);
 

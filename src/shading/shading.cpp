@@ -11,18 +11,6 @@ namespace ink {
 
 namespace {
 
-/// Every 8-bit sRGB value as linear light.
-Color decode(Rgb8 color) {
-    static const auto kTable = [] {
-        std::array<float, 256> table{};
-        for (std::size_t v = 0; v < table.size(); ++v) {
-            table[v] = srgb_decode(static_cast<float>(v) / 255.0F);
-        }
-        return table;
-    }();
-    return {kTable[color.r], kTable[color.g], kTable[color.b]};
-}
-
 constexpr std::uint32_t kSeveralObjects = kNoObject - 1;
 
 /// The object that all rays of a packet hit, if they hit anything.
@@ -38,10 +26,6 @@ std::uint32_t shared_object(const HitPacket& hits) {
     }
     return after == 0 || least + 1 == after ? least : kSeveralObjects;
 }
-
-/// Ambient occlusion also dims the other lights, by this share: rays that graze the scene on their
-/// way to a cleft mostly do not arrive.
-constexpr float kCleftShade = 0.5F;
 
 /// By this share it dims tones.
 constexpr float kToonClefts = 0.75F;
@@ -103,10 +87,10 @@ void Shader::add_surface(const Object& object, const ResolvedMaterial& material,
     if (!std::holds_alternative<Mesh>(object.shape)) {
         const auto& colors = std::visit(
             [](const auto& s) -> auto& { return s.colors; }, object.shape);
-        if (!colors.empty()) surface.primitive_colors = colors.data();
         const CopyNumbering numbers = numbering(object.shape);
+        if (!colors.empty()) surface.primitives.colors = colors.data();
         if (!numbers.copies.empty()) {
-            surface.primitives_a_copy = static_cast<std::uint32_t>(numbers.originals);
+            surface.primitives.a_copy = static_cast<std::uint32_t>(numbers.originals);
         }
     } else {
         const auto& mesh = std::get<Mesh>(object.shape);
@@ -118,7 +102,10 @@ void Shader::add_surface(const Object& object, const ResolvedMaterial& material,
         surface.line_normals = own ? mesh.line_normals[0].data() : surface.corner_normals;
         if (source == NormalSource::geometric) surface.line_normals = nullptr;
     }
-    if (material.uniform) surface.primitive_colors = surface.vertex_colors = nullptr;
+    if (material.uniform) {
+        surface.primitives = {};
+        surface.vertex_colors = nullptr;
+    }
     any_vertex_colors_ |= surface.vertex_colors != nullptr;
     any_smooth_ |= surface.corner_normals != nullptr || surface.line_normals != nullptr;
     any_line_normals_ |= surface.line_normals != surface.corner_normals;
@@ -130,7 +117,7 @@ void Shader::smooth_sticks(const Scene& scene, const Camera& camera, float spaci
                            std::span<const IdLevel> ids) {
     stick_borders_.emplace(camera.projection(), spacing);
     for (std::size_t k = 0; k < surfaces_.size(); ++k) {
-        const bool colored = surfaces_[k].primitive_colors != nullptr;
+        const bool colored = surfaces_[k].primitives.colors != nullptr;
         stick_borders_->add(colored ? std::get_if<Glyphs>(&scene.objects()[k].shape) : nullptr,
                             ids[k]);
     }
@@ -161,23 +148,25 @@ bool Shader::shade(const SurfacePacket& surface, ColorPacket& colors) const {
     return true;
 }
 
-bool Shader::shade(const HitPacket& hits, const NormalPacket& normals, ColorPacket& colors) const {
+bool Shader::shade(const HitPacket& hits, const NormalPacket& normals, bool is_strip,
+                   ColorPacket& colors) const {
     const std::uint32_t object = shared_object(hits);
     if (object == kNoObject) {
         colors = background_;
         return false;
     }
-    if (object != kSeveralObjects && surfaces_[object].primitive_colors == nullptr &&
-        pastel_ <= 0.0F) {
+    if (ambient_ == nullptr && object != kSeveralObjects &&
+        surfaces_[object].primitives.colors == nullptr && pastel_ <= 0.0F) {
         shade_open(lights_, hits, normals, surfaces_[object].color, background_, colors);
         return true;
     }
     ColorLanes base;
     look_up_colors(hits, object, base);
     whiten(base);
-    ColorLanes lit;
-    shade_open(lights_, normals, base, lit);
-    finish(hits, lit, background_, colors);
+    Lanes<float> open;
+    if (ambient_ != nullptr) ambient_->openness(hits, normals, is_strip, open);
+    shade_open(lights_, hits, normals, ambient_ != nullptr ? &open : nullptr, base, background_,
+               colors);
     return true;
 }
 
@@ -218,10 +207,7 @@ void Shader::prefetch(const HitPacket& hits) const {
 
 Color Shader::surface_color(const Surface& surface, const HitPacket& hits, int lane) {
     const std::uint32_t primitive = hits.primitive[lane];
-    if (surface.primitive_colors != nullptr) {
-        const std::uint32_t a_copy = surface.primitives_a_copy;
-        return decode(surface.primitive_colors[a_copy == 0 ? primitive : primitive % a_copy]);
-    }
+    if (surface.primitives.colors != nullptr) return decode(surface.primitives.of(primitive));
     if (surface.vertex_colors == nullptr) return surface.color;
 
     const Mesh::Triangle& corners = surface.triangles[primitive];
@@ -249,10 +235,10 @@ void fill(Color color, ColorLanes& colors) {
 }  // namespace
 
 void Shader::look_up_colors(const HitPacket& hits, std::uint32_t object, ColorLanes& colors) const {
-    if (object != kSeveralObjects && surfaces_[object].primitive_colors == nullptr &&
-        surfaces_[object].vertex_colors == nullptr) {
-        fill(surfaces_[object].color, colors);
-        return;
+    if (object != kSeveralObjects && surfaces_[object].vertex_colors == nullptr) {
+        const Surface& surface = surfaces_[object];
+        if (surface.primitives.colors == nullptr) return fill(surface.color, colors);
+        return look_up(surface.primitives, hits, colors);
     }
     // Neighbours mostly hit the same primitive.
     std::uint32_t last_object = kNoObject;
@@ -303,9 +289,12 @@ void Shader::look_up_gloss(const HitPacket& hits, Gloss& gloss) const {
 /// Surface colour times the light that is scattered, and what is reflected.
 void Shader::illuminate(const SurfacePacket& surface, const ColorLanes& base,
                         ColorLanes& lit) const {
-    if (open_ && ambient_ == nullptr) return shade_open(lights_, surface.normals, base, lit);
+    if (open_ && ambient_ == nullptr) {
+        return shade_open(lights_, surface.normals, nullptr, base, lit);
+    }
     Lanes<float> open = Lanes<float>::filled(1.0F);
     if (ambient_ != nullptr) ambient_->openness(surface, open);
+    if (open_) return shade_open(lights_, surface.normals, &open, base, lit);
     if (mode_ == ShadeMode::flat) return shade_flat(base, open, lit);
     if (mode_ == ShadeMode::gooch) {
         return shade_gooch(lights_.sources.front(), surface, base, open, lit);
@@ -328,7 +317,7 @@ void Shader::illuminate(const SurfacePacket& surface, const ColorLanes& base,
         if (light.shadows && shadows_.any()) {
             shadows_.visible(light, surface, visible);
         } else if (ambient_ != nullptr) {
-            for (int i = 0; i < kLanes; ++i) visible[i] = 1.0F - kCleftShade * (1.0F - open[i]);
+            for (int i = 0; i < kLanes; ++i) visible[i] = cleft_light(open[i]);
         }
         add_diffuse(light, surface, visible, scattered);
         if (any_gloss_) add_highlight(light, surface, gloss, base, visible, reflected);

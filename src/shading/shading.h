@@ -16,6 +16,7 @@
 #include "shading/lighting.h"
 #include "shading/lights.h"
 #include "shading/material_rules.h"
+#include "shading/primitive_colors.h"
 #include "shading/shadows.h"
 #include "shading/stick_borders.h"
 
@@ -72,11 +73,12 @@ class Shader {
     /// Whether colours follow from which primitives were hit and their normals, so that hits need
     /// no more than these.
     bool needs_normals_only() const {
-        return open_ && ambient_ == nullptr && fog_ <= 0.0F && !any_vertex_colors_ &&
-               !stick_borders_;
+        return open_ && (ambient_ == nullptr || ambient_->needs_normals_only()) && fog_ <= 0.0F &&
+               !any_vertex_colors_ && !stick_borders_;
     }
-    /// If so.
-    bool shade(const HitPacket& hits, const NormalPacket& normals, ColorPacket& colors) const;
+    /// If so, of a block of points, or a strip.
+    bool shade(const HitPacket& hits, const NormalPacket& normals, bool is_strip,
+               ColorPacket& colors) const;
     /// How bright the surface is for the light that falls on it, whatever its colour: 1 where the
     /// brightest light falls straight on. Where modes of shading know no light, 1.
     void brightness(const SurfacePacket& surface, Lanes<float>& bright) const;
@@ -100,8 +102,7 @@ class Shader {
     struct Surface {
         Color color;
         float specular = 0.0F, roughness = 1.0F, metal = 0.0F;
-        const Rgb8* primitive_colors = nullptr;
-        std::uint32_t primitives_a_copy = 0;  ///< that share their colours with copies; 0: none do
+        PrimitiveColors primitives{};
         const Rgb8* vertex_colors = nullptr;
         const Mesh::Triangle* triangles = nullptr;
         const std::uint32_t* corner_normals = nullptr;  ///< three a triangle
