@@ -98,7 +98,7 @@ HWY_INLINE Vectors unit_normal(const UnitShape& shape, const Vectors& p) {
 
 HWY_INLINE void resolve_glyph(const ScreenPacket& packet, int lane, const Front& front, int i,
                               Mask lanes, Found& found) {
-    const auto form = form_of<GlyphForm>(packet, lane);
+    const auto form = glyph_form(packet.forms[static_cast<std::size_t>(lane)]);
     const LocalRays rays = local_rays(form, load(front.x, i), load(front.y, i));
     const auto s = hn::Sub(load(front.depth, i), set(form.z));
     const Vectors n = unit_normal(packet.shape, along(rays.p, rays.d, s));

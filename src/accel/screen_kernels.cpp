@@ -66,8 +66,8 @@ void find_union(const BoundsPacket& of, BoundsPacket& packet, int lane) {
 template <GlyphKind kKind>
 HWY_INLINE GlyphTest<kKind> glyph_test(const ScreenPacket& packet, int lane) {
     const auto a = static_cast<float>(packet.shape.a);
-    return {form_of<GlyphForm>(packet, lane), 0.5F * (a - 1.0F), 0.5F * (1.0F + a),
-            packet.shape.capped};
+    return {glyph_form(packet.forms[static_cast<std::size_t>(lane)]), 0.5F * (a - 1.0F),
+            0.5F * (1.0F + a), packet.shape.capped};
 }
 
 /// Calls `run(make)`, where `make(packet, lane)` gives the test for a primitive of the packet's
@@ -76,12 +76,14 @@ template <class Run>
 HWY_INLINE void for_kind(const Basis& basis, const ScreenPacket& packet, const Run& run) {
     using enum GlyphKind;
     switch (packet.kind) {
-        case ClusterKind::spheres:
-            return run([&](const ScreenPacket& p, int lane) {
-                return SphereTest{form_of<SphereForm>(p, lane),
-                                  static_cast<float>(basis.origin_step),
-                                  static_cast<float>(basis.slope_step)};
+        case ClusterKind::spheres: {
+            const auto origin_step = static_cast<float>(basis.origin_step);
+            const auto slope_step = static_cast<float>(basis.slope_step);
+            return run([=](const ScreenPacket& p, int lane) {
+                return SphereTest{sphere_form(p.forms[static_cast<std::size_t>(lane)]), origin_step,
+                                  slope_step};
             });
+        }
         case ClusterKind::triangles:
         case ClusterKind::solids:
             return run([](const ScreenPacket& p, int lane) {

@@ -1,7 +1,6 @@
 // What the kernels of camera rays share; included once for each instruction set.
 
 #include <array>
-#include <cstring>
 
 #include "accel/screen_kernels.h"
 #include "base/lanes-inl.h"
@@ -18,12 +17,29 @@
 HWY_BEFORE_NAMESPACE();
 namespace ink::HWY_NAMESPACE {
 
-/// A lane's numbers.
-template <class Form>
-HWY_INLINE Form form_of(const ScreenPacket& packet, int lane) {
-    Form form;
-    std::memcpy(&form, packet.forms[static_cast<std::size_t>(lane)].data(), sizeof(form));
-    return form;
+// Forms are read number by number: a copy of them all would go through memory, which every test
+// would wait for.
+
+HWY_INLINE SphereForm sphere_form(const FormNumbers& n) {
+    return {n[0], n[1], n[2], n[3], n[4], n[5], n[6], n[7], n[8]};
+}
+
+HWY_INLINE TriangleForm triangle_form(const FormNumbers& n) {
+    return {{{{n[0], n[1], n[2], n[3]}, {n[4], n[5], n[6], n[7]}, {n[8], n[9], n[10], n[11]}}},
+            n[12],
+            n[13],
+            n[14],
+            n[15],
+            n[16],
+            n[17],
+            n[18],
+            n[19],
+            n[20],
+            n[21]};
+}
+
+HWY_INLINE GlyphForm glyph_form(const FormNumbers& n) {
+    return {n[0], n[1], n[2], {n[3], n[4], n[5]}, {n[6], n[7], n[8]}, {n[9], n[10], n[11]}, n[12]};
 }
 
 HWY_INLINE Vectors along(const Vectors& o, const Vectors& d, Number s) {

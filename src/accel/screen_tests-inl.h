@@ -115,21 +115,6 @@ HWY_INLINE Number edge_value(const TriangleForm::Edge& edge, Number qx, Number q
                    hn::Mul(set(edge.dy), hn::Sub(qx, set(edge.x))));
 }
 
-/// Number by number: a copy of them all would go through memory, which every test would wait for.
-HWY_INLINE TriangleForm triangle_form(const FormNumbers& n) {
-    return {{{{n[0], n[1], n[2], n[3]}, {n[4], n[5], n[6], n[7]}, {n[8], n[9], n[10], n[11]}}},
-            n[12],
-            n[13],
-            n[14],
-            n[15],
-            n[16],
-            n[17],
-            n[18],
-            n[19],
-            n[20],
-            n[21]};
-}
-
 /// Share of its terms that an edge's value may be rounded by.
 constexpr float kRounding = 1e-6F;
 

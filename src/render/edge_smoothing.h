@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -39,13 +40,14 @@ class EdgeSmoothing {
     void add(const Segment& segment, PixelColor left, PixelColor right) {
         constexpr float kMostChange = 64.0F;
         PixelColor& change = changes_[static_cast<std::size_t>(waiting_)];
-        bool any = false;
-        // Channel by channel: to load as a vector what was stored in pieces takes a wait.
+        float most = 0.0F;
+        // Channel by channel: to load as a vector what was stored in pieces takes a wait. Without a
+        // branch, as std::clamp has.
         for (std::size_t c = 0; c < change.size(); ++c) {
-            change[c] = std::clamp(right[c] - left[c], -kMostChange, kMostChange);
-            any = any || change[c] != 0.0F;
+            change[c] = std::min(std::max(right[c] - left[c], -kMostChange), kMostChange);
+            most = std::max(most, std::abs(change[c]));
         }
-        if (!any) return;
+        if (most == 0.0F) return;
         ends_.ax[waiting_] = segment.a.x;
         ends_.ay[waiting_] = segment.a.y;
         ends_.bx[waiting_] = segment.b.x;

@@ -33,8 +33,12 @@ class LatticeBlocks {
     /// Of a point of the grid.
     Place place_of(int i, int j) const {
         if (i < columns_ && j < rows_) {
-            return {block(i / kBlockSide, j / kBlockSide),
-                    j % kBlockSide * kBlockSide + i % kBlockSide};
+            // Without a sign, to divide is to shift.
+            const auto x = static_cast<unsigned>(i);
+            const auto y = static_cast<unsigned>(j);
+            constexpr unsigned kSide = kBlockSide;
+            return {block(static_cast<int>(x / kSide), static_cast<int>(y / kSide)),
+                    static_cast<int>(y % kSide * kSide + x % kSide)};
         }
         const bool down = i >= columns_;
         const int along = down ? j : i;

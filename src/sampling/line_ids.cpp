@@ -25,16 +25,14 @@ const Groups* groups(const Object& object, IdLevel level) {
     return found == nullptr || found->empty() ? nullptr : found;
 }
 
-/// All lanes hit one object, or nothing.
+/// All lanes hit one object, or nothing. One packet: of several, GCC leaves the last one to a
+/// branch a lane.
 INKTRACE_MULTIVERSION
-void resolve_one_object(std::span<const HitPacket> hits, GeometryId first, std::uint32_t stride,
-                        Lanes<GeometryId>* __restrict ids) {
-    for (const HitPacket& packet : hits) {
-        for (int i = 0; i < kLanes; ++i) {
-            const GeometryId id = first + stride * packet.primitive[i];
-            (*ids)[i] = packet.object[i] == kNoObject ? kBackground : id;
-        }
-        ++ids;
+void resolve_one_object(const HitPacket& hits, GeometryId first, std::uint32_t stride,
+                        Lanes<GeometryId>& __restrict ids) {
+    for (int i = 0; i < kLanes; ++i) {
+        const GeometryId id = first + stride * hits.primitive[i];
+        ids[i] = hits.object[i] == kNoObject ? kBackground : id;
     }
 }
 
@@ -86,10 +84,12 @@ void LineIds::add(const Object& object, IdLevel level, GeometryId& next) {
 }
 
 void LineIds::resolve(std::span<const HitPacket> hits, Lanes<GeometryId>* ids) const {
-    if (objects_.size() == 1 && objects_[0].groups == nullptr) {
-        return resolve_one_object(hits, objects_[0].first, objects_[0].stride, ids);
-    }
+    const bool one_object = objects_.size() == 1 && objects_[0].groups == nullptr;
     for (const HitPacket& packet : hits) {
+        if (one_object) {
+            resolve_one_object(packet, objects_[0].first, objects_[0].stride, *ids++);
+            continue;
+        }
         for (int i = 0; i < kLanes; ++i) {
             (*ids)[i] = resolve(packet.object[i], packet.primitive[i]);
         }
