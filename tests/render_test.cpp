@@ -234,6 +234,20 @@ TEST(AnyPicture, DoesNotDependOnThreadsOrTiles) {
     }
 }
 
+TEST(EdgesPicture, HasTilesSmallerThanItsLinesAreWide) {
+    const Scene scene(random_objects(5, 60, 40));
+    const auto tracer = make_tracer(scene);
+    Settings settings = small_picture();
+    settings.line_width.value = 30.0;
+    settings.halo.value = 10.0;
+    settings.tile = 512;
+    const Film reference = render(scene, *tracer, settings);
+    for (const int tile : {4, 8, 16}) {
+        settings.tile = tile;
+        EXPECT_EQ(render(scene, *tracer, settings).display().pixels, reference.display().pixels);
+    }
+}
+
 TEST(AnyPicture, DoesNotDependOnTheWindingOfTriangles) {
     std::vector<Object> objects = random_objects(9, 0, 60);
     objects.erase(objects.begin());

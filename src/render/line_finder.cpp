@@ -104,7 +104,8 @@ void LineFinder::put_pixels(const Tile& tile) {
     const Size size = edges_.pipeline.film.size();
     const int x0 = std::max(tile.x0, 0);
     const int x1 = std::min(tile.x1, size.width);
-    for (int y = std::max(tile.y0, 0); y < std::min(tile.y1, size.height); y += kBlockSide) {
+    const int y1 = x0 < x1 ? std::min(tile.y1, size.height) : 0;  // it may lie beside the picture
+    for (int y = std::max(tile.y0, 0); y < y1; y += kBlockSide) {
         gather_row(x0, x1, y);
         edges_.pipeline.film.put_row(x0, y, block_row_);
         for (int x = x0; edges_.pipeline.aovs && x < x1; x += kBlockSide) put_aovs({x, y});
