@@ -138,6 +138,33 @@ TEST(Ink, IsTheSameOnAnyTile) {
     }
 }
 
+TEST(Ink, OfOneLineIsTheSameWhateverOtherInksAreOnTheTile) {
+    InkSettings settings;
+    settings.styles.assign(kLineTypes, {2.7F, {0.3F, 0.6F, 0.1F}, 0.7F});
+    settings.styles[static_cast<std::size_t>(LineType::crease)].color = {0, 0, 1};
+    Segment line{{1.3F, 2.1F}, {14.6F, 9.2F}};
+    line.type = LineType::silhouette;
+    Segment other{{1, 28}, {14, 30}};
+    other.type = LineType::crease;
+    InkTile alone(settings);
+    alone.begin(0, 0, 16, 32);
+    alone.draw(line);
+    alone.finish();
+    InkTile both(settings);
+    both.begin(0, 0, 16, 32);
+    both.draw(line);
+    both.draw(other);
+    both.finish();
+    ASSERT_TRUE(alone.uniform_color() && !both.uniform_color());
+    for (int y = 0; y < 16; ++y) {
+        for (int x = 0; x < 16; ++x) {
+            const std::size_t k = alone.index(x, y);
+            EXPECT_EQ(both.alpha()[k], alone.alpha()[k]);
+            EXPECT_EQ(both.color()[1][k], alone.alpha()[k] * 0.6F);
+        }
+    }
+}
+
 /// However it is inked: narrow or wide, on one row of pixels or many.
 TEST(Ink, OfAStrokeIsTheAreaUnderItsBandOnEveryInstructionSet) {
     on_every_instruction_set([] {

@@ -217,7 +217,8 @@ void InkTile::finish_alone(const Layer& layer) {
 }
 
 /// The inks of a pixel over each other, front to back. Among equally near ones the first style's
-/// lies on top.
+/// lies on top. Where there is one ink only, the sums are what `finish_alone` gives to the last
+/// bit: which other inks are on its tile has no say.
 void InkTile::finish_pixel(std::size_t k, std::span<const Layer* const> used) {
     const std::size_t block = k / kLanes;
     const auto lane = static_cast<int>(k % kLanes);
@@ -228,15 +229,17 @@ void InkTile::finish_pixel(std::size_t k, std::span<const Layer* const> used) {
         here_.insert(std::ranges::upper_bound(here_, depth(layer), {}, depth), layer);
     }
     float clear = 1.0F;  // what the inks so far let through
+    float alpha = 0.0F;
     Color color{0.0F, 0.0F, 0.0F};
     for (const Layer* layer : here_) {
         const float ink = clear * layer->coverage[block][lane] * layer->opacity;
         color.r += ink * layer->color.r;
         color.g += ink * layer->color.g;
         color.b += ink * layer->color.b;
+        alpha += ink;
         clear -= ink;
     }
-    alpha_[block][lane] = 1.0F - clear;
+    alpha_[block][lane] = alpha;
     color_[0][k] = color.r;
     color_[1][k] = color.g;
     color_[2][k] = color.b;
