@@ -32,7 +32,9 @@ void expect_first_wins(const Seen& seen, std::uint32_t primitives) {
     expect_first_wins(seen.trace(points), primitives);
     for (const PacketWidth width : {PacketWidth::four, PacketWidth::eight, PacketWidth::sixteen}) {
         const auto embree = make_embree_tracer(seen.scene(), width);
-        expect_first_wins(seen.trace(*embree, points, Coherence::coherent), primitives);
+        for (const Coherence coherence : {Coherence::coherent, Coherence::incoherent}) {
+            expect_first_wins(seen.trace(*embree, points, coherence), primitives);
+        }
     }
 }
 

@@ -322,7 +322,7 @@ class EmbreeTracer final : public Tracer {
                SurfaceHits* all, const Kernel& kernel) const {
         Query query;
         NearestHits nearest;
-        const bool told_apart = tells_apart(coherence, all);
+        const bool told_apart = tells_apart(all);
         auto&& args = arguments(coherence, query, all, told_apart ? &nearest : nullptr);
         alignas(64) RayHit packet{};  // Embree leaves the hit of a ray that misses as it was
         prepare<RayHit, Width>(packet);
@@ -339,9 +339,7 @@ class EmbreeTracer final : public Tracer {
     }
 
     /// Where it matters which of two surfaces is seen, and there may be some that coincide.
-    bool tells_apart(Coherence coherence, const SurfaceHits* all) const {
-        return any_flat_ && all == nullptr && coherence == Coherence::coherent;
-    }
+    bool tells_apart(const SurfaceHits* all) const { return any_flat_ && all == nullptr; }
 
     DeviceHandle device_;
     SceneHandle scene_;
