@@ -253,7 +253,8 @@ std::vector<FieldSummary> ParticleColumns::summaries() const {
     std::vector<FieldSummary> summaries;
     for (const Column& column : columns_) {
         if (column.axis >= 0) continue;
-        FieldSummary& summary = summaries.emplace_back(column.name, 1, column.least, column.most);
+        summaries.push_back({column.name, 1, column.least, column.most, {}});
+        FieldSummary& summary = summaries.back();
         const bool has_numbers = column.least <= column.most;
         if (has_numbers || column.told.size() > kMostTold) continue;
         summary.words.assign(column.told.begin(), column.told.end());
