@@ -141,9 +141,10 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{"no_input", {"render", "-o", "a.png"}, {"INPUT is required", kSeeHelp}},
         draw("output_with_unknown_extension", kSample, "a.foo",
              {"a.foo: ", "cannot tell the picture's format",
-              ".png, .jpg, .tiff, .exr, .svg or .pdf"}),
+              ".png, .jpg, .tiff, .exr, .svg, .svgz or .pdf"}),
         draw("output_without_extension", kSample, "a",
-             {"a: ", "cannot tell the picture's format", ".png, .jpg, .tiff, .exr, .svg or .pdf"})),
+             {"a: ", "cannot tell the picture's format",
+              ".png, .jpg, .tiff, .exr, .svg, .svgz or .pdf"})),
     name_of);
 
 INSTANTIATE_TEST_SUITE_P(

@@ -87,6 +87,15 @@ TEST_F(CommandLine, DrawsLinesAsCurves) {
     expect_says(soft.err, {"no soft profile", "--metric linear", "no halos", "--halo 2px"});
     expect_says(read_bytes(file("b.svg")), {"inktrace:Settings=", "</rdf:RDF>"});
 
+    // The same text, packed: gzip's own tool unpacks it.
+    EXPECT_EQ(run({"render", kSample, "-o", "c.svgz", "--size", "200x150"}).status, 0);
+    EXPECT_EQ(run({"render", kSample, "-o", "c.svg", "--size", "200x150"}).status, 0);
+    EXPECT_LT(fs::file_size(file("c.svgz")), fs::file_size(file("c.svg")) / 3);
+    const std::string unpack =
+        "gunzip -S z " + file("c.svgz").string() + " -c > " + file("unpacked.svg").string();
+    EXPECT_EQ(std::system(unpack.c_str()), 0);
+    EXPECT_EQ(read_bytes(file("unpacked.svg")), read_bytes(file("c.svg")));
+
     EXPECT_EQ(run({"render", kSample, "-o", "a.pdf", "--size", "200x150"}).status, 0);
     EXPECT_TRUE(read_bytes(file("a.pdf")).starts_with("%PDF-"));
 }
@@ -160,7 +169,7 @@ TEST_P(EveryFormat, KeepsAnOlderPictureWhenANewOneFails) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Written, EveryFormat,
-                         testing::Values(".png", ".jpg", ".tiff", ".exr", ".svg", ".pdf"),
+                         testing::Values(".png", ".jpg", ".tiff", ".exr", ".svg", ".svgz", ".pdf"),
                          [](const auto& format) { return std::string(format.param + 1); });
 
 TEST_F(CommandLine, FailsWhereStandardOutputCannotBeWritten) {

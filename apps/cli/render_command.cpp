@@ -194,7 +194,7 @@ void add_render_command(CLI::App& app) {
         ->group("Input");
     command
         ->add_option("-o,--output", arguments->output,
-                     "Picture to write: .png, .jpg, .tiff, .exr; as curves: .svg, .pdf; "
+                     "Picture to write: .png, .jpg, .tiff, .exr; as curves: .svg, .svgz, .pdf; "
                      "### in its name is the number of a frame; .mp4: a film of frames, by ffmpeg; "
                      "by default the input's name with .png, here")
         ->type_name("FILE")

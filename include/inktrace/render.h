@@ -50,9 +50,9 @@ class Picture {
     /// The lines as data; empty unless asked for with `RenderOptions::curves`.
     std::vector<Polyline> lines() const;
 
-    /// Writes .png, .jpg or .tiff (which need `display` pixels), .exr (`linear` pixels), .svg or
-    /// .pdf (`curves`, and `display` pixels for what lies below them), with the settings in the
-    /// file's metadata. AOVs become channels of an EXR, or pictures beside any other file
+    /// Writes .png, .jpg or .tiff (which need `display` pixels), .exr (`linear` pixels), .svg,
+    /// .svgz or .pdf (`curves`, and `display` pixels for what lies below them), with the settings
+    /// in the file's metadata. AOVs become channels of an EXR, or pictures beside any other file
     /// ("x.depth.png"). Files appear whole or not at all. Throws Error (input) where the file
     /// cannot be written, Error (usage) where the picture lacks what the file needs.
     void save(const std::filesystem::path& file) const;

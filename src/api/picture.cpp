@@ -43,11 +43,12 @@ const RenderStats& Picture::stats() const { return impl_->stats; }
 
 namespace {
 
-enum class CurveFormat { svg, pdf };
+enum class CurveFormat { svg, packed_svg, pdf };
 
 std::optional<CurveFormat> curve_format(const std::filesystem::path& file) {
     const std::string extension = ink::to_lower(file.extension().string());
     if (extension == ".svg") return CurveFormat::svg;
+    if (extension == ".svgz") return CurveFormat::packed_svg;
     if (extension == ".pdf") return CurveFormat::pdf;
     return std::nullopt;
 }
@@ -56,8 +57,8 @@ ink::ImageFormat picture_format(const std::filesystem::path& file) {
     const auto format = ink::image_format(file);
     if (!format) {
         throw ink::UsageError(fmt::format(
-            "{}: cannot tell the picture's format; end the name in .png, .jpg, .tiff, .exr, .svg "
-            "or .pdf",
+            "{}: cannot tell the picture's format; end the name in .png, .jpg, .tiff, .exr, .svg, "
+            ".svgz or .pdf",
             file.string()));
     }
     return *format;
@@ -89,6 +90,7 @@ void save_curves(const Picture::Impl& picture, const std::filesystem::path& file
     const ink::LineArt& art = line_art(picture, file);
     if (art.image || !art.regions.empty()) need_display(picture, file);
     if (format == CurveFormat::svg) ink::write_svg(file, art);
+    if (format == CurveFormat::packed_svg) ink::write_svgz(file, art);
     if (format == CurveFormat::pdf) ink::write_pdf(file, art);
 }
 

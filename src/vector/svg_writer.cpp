@@ -10,49 +10,15 @@
 #include <string_view>
 #include <utility>
 
+#include "io/gzip.h"
 #include "io/image_writers.h"
 #include "vector/line_layers.h"
+#include "vector/path_data.h"
 #include "vector/xml_text.h"
 
 namespace ink {
 
 namespace {
-
-/// Two decimals: a twentieth of the default tolerance at most is lost.
-void append_number(std::string& text, float value) {
-    auto hundredths = static_cast<std::int64_t>(std::llround(value * 100.0F));
-    if (hundredths < 0) {
-        text += '-';
-        hundredths = -hundredths;
-    }
-    fmt::format_to(std::back_inserter(text), "{}", hundredths / 100);
-    const auto rest = static_cast<int>(hundredths % 100);
-    if (rest == 0) return;
-    text += '.';
-    text += static_cast<char>('0' + rest / 10);
-    if (rest % 10 != 0) text += static_cast<char>('0' + rest % 10);
-}
-
-void append_point(std::string& text, char command, Vec2f point) {
-    text += command;
-    append_number(text, point.x);
-    text += ',';
-    append_number(text, point.y);
-}
-
-void append_curve(std::string& text, const Curve& curve, bool closed) {
-    append_point(text, 'M', curve.start);
-    for (const CurvePiece& piece : curve.pieces) {
-        if (piece.straight) {
-            append_point(text, 'L', piece.end);
-            continue;
-        }
-        append_point(text, 'C', piece.control1);
-        append_point(text, ' ', piece.control2);
-        append_point(text, ' ', piece.end);
-    }
-    if (closed) text += 'Z';
-}
 
 std::string base64(std::string_view bytes) {
     constexpr std::string_view kDigits =
@@ -156,7 +122,7 @@ void SvgText::add_regions() {
         if (region.tone == Region::Tone::light) text_ += " data-tone=\"light\"";
         if (region.tone == Region::Tone::shade) text_ += " data-tone=\"shade\"";
         add(" fill=\"{0}\" stroke=\"{0}\" d=\"", to_string(region.color));
-        for (const Curve& outline : region.outlines) append_curve(text_, outline, true);
+        for (const Curve& outline : region.outlines) append_path_data(text_, outline, true);
         text_ += "\"/>\n";
     }
     text_ += "</g>\n";
@@ -226,7 +192,7 @@ void SvgText::add_stroke(std::size_t k, const LineLayer& layer) {
         if (stroke.begins_at > 0.0) add(" stroke-dashoffset=\"{:.2f}\"", stroke.begins_at);
     }
     text_ += " d=\"";
-    append_curve(text_, stroke.curve, stroke.closed);
+    append_path_data(text_, stroke.curve, stroke.closed);
     text_ += "\"/>\n";
 }
 
@@ -249,7 +215,7 @@ void SvgText::add_legend() {
         "stroke-linejoin=\"round\">\n";
     for (const LegendShape& shape : art_.legend.shapes) {
         std::string path;
-        for (const Curve& curve : shape.outlines) append_curve(path, curve, true);
+        for (const Curve& curve : shape.outlines) append_path_data(path, curve, true);
         if (shape.is_text()) {
             add("<path fill=\"none\" stroke=\"{}\" stroke-width=\"{:.2f}\" d=\"{}\"/>\n",
                 to_string(art_.legend.paper), 2.0 * art_.legend.rim_px, path);
@@ -274,6 +240,11 @@ std::string SvgText::document() {
 void write_svg(const std::filesystem::path& file, const LineArt& art) {
     const std::string text = SvgText(art).document();
     write_whole(file, [&](ByteSink& sink) { sink.write(text.data(), text.size()); });
+}
+
+void write_svgz(const std::filesystem::path& file, const LineArt& art) {
+    const std::string packed = gzipped(SvgText(art).document());
+    write_whole(file, [&](ByteSink& sink) { sink.write(packed.data(), packed.size()); });
 }
 
 }  // namespace ink

@@ -11,5 +11,7 @@ namespace ink {
 /// two decimals. The file appears whole or not at all, and the same drawing gives the same bytes.
 /// Throws OutputError.
 void write_svg(const std::filesystem::path& file, const LineArt& art);
+/// The same, packed by gzip (.svgz), to about a fifth.
+void write_svgz(const std::filesystem::path& file, const LineArt& art);
 
 }  // namespace ink

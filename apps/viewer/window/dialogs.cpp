@@ -128,8 +128,8 @@ void draw_export(Interface& interface) {
     label(interface, "File");
     const bool entered =
         ImGui::InputText("##file", &choice.file, ImGuiInputTextFlags_EnterReturnsTrue);
-    ImGui::TextDisabled("%s",
-                        ".png .jpg .tiff .exr: pixels   .svg .pdf: curves   .json: scene file");
+    ImGui::TextDisabled(
+        "%s", ".png .jpg .tiff .exr: pixels   .svg .svgz .pdf: curves   .json: scene file");
     describe_place(choice.file);
     export_size(interface, choice);
     const auto aov = std::ranges::find(all_settings(), "aov", &SettingInfo::name);
