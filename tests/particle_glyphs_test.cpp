@@ -121,11 +121,12 @@ TEST(ParticleGlyphs, WithoutVolumeAreLeftOut) {
     const std::string names = "x,y,z,r,Fxx,Fyy,Fzz,Fxy,Fyz,Fxz\n";
     const auto file = folder.write("a.csv", names +
                                                 "0,0,0,1,1,1,1,0,0,0\n1,0,0,1,1,1,0,0,0,0\n"
-                                                "2,0,0,1,nan,1,1,0,0,0\n3,0,0,1,1e30,1,1,0,0,0\n");
+                                                "2,0,0,1,nan,1,1,0,0,0\n3,0,0,1,1e30,1,1,0,0,0\n"
+                                                "4,0,0,1,1,1,1e-8,0,0,0\n");
     const FileContents contents = read_glyphs(file, Glyph::ellipsoid);
     EXPECT_EQ(glyphs(contents).placements.size(), 1U);
     ASSERT_EQ(contents.warnings.size(), 1U);
-    EXPECT_NE(contents.warnings[0].find("3 of 4 particles"), std::string::npos);
+    EXPECT_NE(contents.warnings[0].find("4 of 5 particles"), std::string::npos);
     expect_refused(folder.write("b.csv", names + "0,0,0,1,0,0,0,0,0,0\n"),
                    "no particle has a finite place and a positive",
                    {.data = {.glyph = Glyph::box}});

@@ -180,6 +180,11 @@ TEST(SceneFile, NamesLineAndKeyOfWhatIsWrong) {
                      ":1: objects[0].ids:", "primitive");
     expect_complaint("{\"objects\": [{\"type\": \"box\", \"axes\": [[1,0,0],[0,1,0],[1,1,0]]}]}",
                      ":1: objects[0].axes:", "plane");
+    // The third is twice the first but for rounding.
+    expect_complaint(
+        "{\"objects\": [{\"type\": \"glyphs\", \"shape\": \"box\", \"glyphs\": "
+        "[[0,0,0, 1,0,0, 0,1,0, 0,0,1], [0,0,0, 0.15,0.15,0.15, 0,-0.3,0.15, -0.3,-0.3,-0.3]]}]}",
+        ":1: objects[0].glyphs[1]:", "plane");
     expect_complaint(
         "{\"objects\": [{\"type\": \"mesh\", \"vertices\": [[0,0,0],[1,0,0],[0,1,0]], \"faces\": "
         "[[0,1,3]]}]}",

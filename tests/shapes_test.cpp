@@ -400,6 +400,30 @@ TEST(Shapes, AHexahedronHasNoCrackAlongItsEdges) {
     }
 }
 
+TEST(Shapes, HaveAVolumeUnlessTheirAxesLieInAPlaneButForRounding) {
+    const auto spans = [](Vec3f x, Vec3f y, Vec3f z) {
+        // Whatever the size, and in whatever order.
+        for (const float size : {1e-12F, 1.0F, 1e12F}) {
+            const bool first = has_volume({x * size, y * size, z * size, {}});
+            EXPECT_EQ(first, has_volume({z * size, x * size, y * size, {}}));
+            EXPECT_EQ(first, has_volume({y * size, x * size, z * size, {}}));
+            if (size == 1e12F) return first;
+        }
+        return false;
+    };
+    EXPECT_TRUE(spans({1, 0, 0}, {0, 1, 0}, {0, 0, 1}));
+    EXPECT_TRUE(spans({1, 0, 0}, {0, 1, 0}, {0, 0, 1e-5F}));      // a leaf
+    EXPECT_TRUE(spans({1, 0, 0}, {0, 1e-7F, 0}, {0, 0, 1e-7F}));  // a needle
+    EXPECT_TRUE(spans({1, 0, 0}, {1, 1e-4F, 0}, {1, 0, 1e-4F}));  // sheared
+    EXPECT_FALSE(spans({1, 0, 0}, {0, 1, 0}, {0, 0, 1e-7F}));
+    EXPECT_FALSE(spans({0.15F, 0.15F, 0.15F}, {0, -0.3F, 0.15F}, {-0.3F, -0.3F, -0.3F}));
+    EXPECT_FALSE(spans({1, 0, 0}, {0, 1, 0}, {1, 1, 0}));
+    EXPECT_FALSE(spans({1, 0, 0}, {2, 0, 0}, {3, 0, 0}));
+    EXPECT_FALSE(spans({}, {}, {}));
+    constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+    EXPECT_FALSE(has_volume({{1, 0, 0}, {0, kNan, 0}, {0, 0, 1}, {}}));
+}
+
 TEST(Shapes, GlyphsWithoutVolumeShowNothing) {
     const Scene scene({glyph_object({GlyphKind::ellipsoid},
                                     {{{1, 0, 0}, {0, 1, 0}, {1, 1, 0}, {}},

@@ -60,6 +60,8 @@ Object one_glyph(const UnitShape& shape, const Placement& placement, Vec3d origi
     return make_object(Glyphs{shape, {placement}, {}, {}}, origin);
 }
 
+constexpr std::string_view kNoVolume = "the half axes lie in one plane; the shape has no volume";
+
 /// Three half axes: given as "axes", or `half` along the coordinate axes, turned by "rotate".
 Placement axes_placement(const JsonNode& node, const std::function<Vec3d()>& half) {
     Placement place;
@@ -68,10 +70,7 @@ Placement axes_placement(const JsonNode& node, const std::function<Vec3d()>& hal
         place.x_axis = to_float(rotated(node, axes[0].vector()));
         place.y_axis = to_float(rotated(node, axes[1].vector()));
         place.z_axis = to_float(rotated(node, axes[2].vector()));
-        const Vec3f x = place.x_axis;
-        const double volume =
-            dot(to_double(x), cross(to_double(place.y_axis), to_double(place.z_axis)));
-        if (!(std::abs(volume) > 0.0)) given->fail("lie in one plane; the shape has no volume");
+        if (!has_volume(place)) given->fail(kNoVolume);
         return place;
     }
     const Vec3d h = half();
@@ -218,6 +217,7 @@ Object read_glyphs(const JsonNode& node) {
         if (glyphs.placements.empty()) origin = vector(0);
         glyphs.placements.push_back({to_float(vector(1)), to_float(vector(2)), to_float(vector(3)),
                                      to_float(vector(0) - origin)});
+        if (!has_volume(glyphs.placements.back())) entry.fail(kNoVolume);
     }
     Object object = make_object(std::move(glyphs), origin);
     object.kind = ObjectKind::particles;

@@ -40,6 +40,21 @@ Placement moved(const Placement& placement, const Motion& motion) {
             motion(placement.origin)};
 }
 
+bool has_volume(const Placement& placement) {
+    constexpr double kThinnest = 3e-6;
+    const std::array<Vec3d, 3> axes{to_double(placement.x_axis), to_double(placement.y_axis),
+                                    to_double(placement.z_axis)};
+    double longest = 0.0;
+    double widest = 0.0;  // the largest face of the parallelepiped
+    for (std::size_t k = 0; k < 3; ++k) {
+        longest = std::max(longest, length(axes[k]));
+        widest = std::max(widest, length(cross(axes[k], axes[(k + 1) % 3])));
+    }
+    // Its height over that face, against the width of the face. A needle is as high as it is wide.
+    const double volume = std::abs(dot(axes[0], cross(axes[1], axes[2])));
+    return volume * longest > kThinnest * widest * widest;
+}
+
 Placement placement_between(Vec3d from, Vec3d to, double radius) {
     const Vec3d half = (to - from) * 0.5;
     const auto [x, y] = across(normalize(half));

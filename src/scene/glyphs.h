@@ -51,6 +51,10 @@ struct Placement {
     }
 };
 
+/// Whether the three axes of a placement span a solid, and do not lie in one plane but for
+/// rounding: one thinner than three millionths of its width, rays miss and hit by chance.
+bool has_volume(const Placement& placement);
+
 /// A frustum, cylinder or cone from `from` to `to`, which must differ; `radius` is that of its
 /// lower end.
 Placement placement_between(Vec3d from, Vec3d to, double radius);

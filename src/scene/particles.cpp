@@ -125,9 +125,7 @@ bool is_drawable(const Placement& place) {
     for (const Vec3f axis : {place.x_axis, place.y_axis, place.z_axis}) {
         if (!(length(to_double(axis)) <= kLargest)) return false;
     }
-    const double volume =
-        dot(to_double(place.x_axis), cross(to_double(place.y_axis), to_double(place.z_axis)));
-    return volume != 0.0;
+    return has_volume(place);
 }
 
 bool has_place(Vec3f p) {
