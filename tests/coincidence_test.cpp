@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstdint>
+#include <random>
 #include <utility>
 #include <vector>
 
@@ -73,6 +75,64 @@ TEST(Coincidence, PrefersTheFirstOfObjectsThatShareAFace) {
                                    : square({{1, 2, 3}, {1, 3, 0}}));
     }
     expect_first_wins(Seen(std::move(stack), oblique_view(), {512, 512}), 2);
+}
+
+Hexahedra::Corners cube_at(Vec3f lower, float side) {
+    Hexahedra::Corners corners;
+    for (std::size_t k = 0; k < 8; ++k) {
+        const bool right = k % 4 == 1 || k % 4 == 2;
+        corners[k] =
+            lower + Vec3f{right ? side : 0.0F, k % 4 >= 2 ? side : 0.0F, k >= 4 ? side : 0.0F};
+    }
+    return corners;
+}
+
+// Embree's distances to boxes err the more, the flatter a ray meets their sides.
+TEST(Coincidence, PrefersTheFirstHoweverFlatTheRay) {
+    constexpr Vec3f kLower{0.2F, -0.1F, 0.2525F};
+    // About the origin and of a size such that the scene's frame is that of these numbers.
+    const Scene scene(
+        {hexahedron_object({cube_at(kLower, 0.2F)}),
+         hexahedron_object({cube_at(kLower - Vec3f{0.1F, 0.1F, 0.0F}, 0.2F)}),
+         sphere_object({{{-0.5F, -0.5F, -0.5F}, 0.01F}, {{0.5F, 0.5F, 0.5F}, 0.01F}})});
+    ASSERT_NEAR(scene.bounds().upper.z, 0.51F, 1e-6F);
+    std::mt19937 random(3);
+    std::vector<RayPacket> rays(2000);
+    for (RayPacket& packet : rays) {
+        packet.active.fill(-1);
+        for (int i = 0; i < kLanes; ++i) {
+            const float angle = 6.28F * uniform(random);
+            const float rise = std::pow(10.0F, -4.0F + 3.0F * uniform(random));
+            const Vec3f dir = normalize(Vec3f{std::cos(angle), std::sin(angle), rise});
+            // Where both of them have a face, from up to a tenth before it.
+            const Vec3f target = kLower + Vec3f{0.01F + 0.08F * uniform(random),
+                                                0.01F + 0.08F * uniform(random), 0.0F};
+            const Vec3f from = target - dir * (0.01F + 0.1F * uniform(random));
+            packet.origin_x[i] = from.x;
+            packet.origin_y[i] = from.y;
+            packet.origin_z[i] = from.z;
+            packet.dir_x[i] = dir.x;
+            packet.dir_y[i] = dir.y;
+            packet.dir_z[i] = dir.z;
+        }
+    }
+    for (const PacketWidth width : {PacketWidth::four, PacketWidth::eight, PacketWidth::sixteen}) {
+        const auto embree = make_embree_tracer(scene, width);
+        for (const Coherence coherence : {Coherence::coherent, Coherence::incoherent}) {
+            std::vector<HitPacket> hits(rays.size());
+            embree->intersect(rays, hits, coherence);
+            int seconds = 0;
+            int all = 0;
+            for (const HitPacket& packet : hits) {
+                for (const std::uint32_t object : packet.object) {
+                    all += object != kNoObject ? 1 : 0;
+                    seconds += object == 1 ? 1 : 0;
+                }
+            }
+            EXPECT_GT(all, 30000);
+            EXPECT_EQ(seconds, 0);
+        }
+    }
 }
 
 TEST(Coincidence, PrefersTheFirstOfBoxesThatFillTheSamePlace) {

@@ -88,7 +88,7 @@ struct UserShape {
             if (nearest == nullptr) {
                 far = t;
             } else if (nearest->take(RTCRayN_id(rays, width, i), t, args->geomID, primitive)) {
-                far = t + kTouching;
+                far = far_enough(t, to_float(ray.origin), to_float(ray.dir));
             } else {
                 continue;
             }

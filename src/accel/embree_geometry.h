@@ -8,9 +8,12 @@
 #include <embree3/rtcore.h>
 #endif
 
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <memory>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "accel/tracer.h"
@@ -43,6 +46,19 @@ using QueryContext = RTCIntersectContext;
 /// Of surfaces that coincide, the one of the lower object, then of the lower primitive is seen, as
 /// in accel/screen_kernels.h. So what lies within kTouching behind the nearest hit still counts.
 inline constexpr float kTouching = 5e-7F;
+
+/// How far a ray must be followed, that Embree may come to all that counts beside a hit at `t`. It
+/// finds the distance of a box as a product of places and inverse directions, in single precision:
+/// the flatter the ray meets a side, the more that errs.
+inline float far_enough(float t, Vec3f origin, Vec3f dir) {
+    constexpr float kRounding = 5e-7F;
+    float steepest = 0.0F;  // what is parallel to a side does not meet it
+    for (const auto& [from, along] :
+         {std::pair{origin.x, dir.x}, std::pair{origin.y, dir.y}, std::pair{origin.z, dir.z}}) {
+        if (along != 0.0F) steepest = std::max(steepest, std::abs(from / along));
+    }
+    return t + kTouching + kRounding * steepest;
+}
 
 /// The nearest hits so far, by ray ID.
 struct NearestHits {

@@ -64,7 +64,11 @@ void prefer_first(const RTCFilterFunctionNArguments* args) {
             RTCHitN_instID(args->hit, n, i, 0), RTCHitN_primID(args->hit, n, i));
         if (nearest.take(RTCRayN_id(args->ray, n, i), t, RTCHitN_geomID(args->hit, n, i),
                          primitive)) {
-            t += kTouching;
+            t = far_enough(t,
+                           {RTCRayN_org_x(args->ray, n, i), RTCRayN_org_y(args->ray, n, i),
+                            RTCRayN_org_z(args->ray, n, i)},
+                           {RTCRayN_dir_x(args->ray, n, i), RTCRayN_dir_y(args->ray, n, i),
+                            RTCRayN_dir_z(args->ray, n, i)});
         } else {
             args->valid[i] = 0;
         }
