@@ -16,32 +16,9 @@
 HWY_BEFORE_NAMESPACE();
 namespace ink::HWY_NAMESPACE {
 
-using Four = hn::FixedTag<float, 4>;
-constexpr Four kFour;
-using Sides = hn::Vec<Four>;
-
-/// A triangle's three sides beside each other, the third one twice.
-struct SideLanes {
-    Sides x, y, dx, dy;
-
-    explicit SideLanes(const FormNumbers& form) {
-        const auto first = hn::LoadU(kFour, form.data());
-        const auto second = hn::LoadU(kFour, form.data() + 4);
-        const auto third = hn::LoadU(kFour, form.data() + 8);
-        const auto starts = hn::InterleaveLower(kFour, first, second);
-        const auto ways = hn::InterleaveUpper(kFour, first, second);
-        const auto last_start = hn::InterleaveLower(kFour, third, third);
-        const auto last_way = hn::InterleaveUpper(kFour, third, third);
-        x = hn::ConcatLowerLower(kFour, last_start, starts);
-        y = hn::ConcatUpperUpper(kFour, last_start, starts);
-        dx = hn::ConcatLowerLower(kFour, last_way, ways);
-        dy = hn::ConcatUpperUpper(kFour, last_way, ways);
-    }
-};
-
 void find_packet_sides(const ScreenPacket& packet, PacketSides& sides) {
     for (std::size_t lane = 0; lane < kLanes; ++lane) {
-        const auto [x, y, dx, dy] = SideLanes(packet.forms[lane]);
+        const auto [x, y, dx, dy] = TriangleLines(packet.forms[lane]);
         const auto length = hn::Sqrt(hn::Add(hn::Mul(dx, dx), hn::Mul(dy, dy)));
         const auto scale = hn::Div(hn::Set(kFour, 1.0F), hn::Max(length, hn::Set(kFour, 1e-20F)));
         hn::StoreU(hn::Neg(hn::Mul(dy, scale)), kFour, sides[lane].x.data());
@@ -59,19 +36,17 @@ void find_front_sides(const Front& front, const ScreenPacket* packets, SidesPack
             sides = TriangleSides::none();
             continue;
         }
-        const auto [x, y, dx, dy] = SideLanes(packets[winner / kLanes].forms[winner % kLanes]);
-        const auto qx = hn::Set(kFour, front.x[i]);
-        const auto qy = hn::Set(kFour, front.y[i]);
-        const auto areas = hn::Sub(hn::Mul(dx, hn::Sub(qy, y)), hn::Mul(dy, hn::Sub(qx, x)));
+        const TriangleLines sides_of(packets[winner / kLanes].forms[winner % kLanes]);
+        const auto areas = sides_of.at(front.x[i], front.y[i]);
         std::array<float, 4> of_sides;
         hn::StoreU(areas, kFour, of_sides.data());
         const float area = of_sides[0] + of_sides[1] + of_sides[2];
         const auto scale = hn::Set(kFour, 1.0F / std::max(area, 1e-20F));
         const auto inside = hn::Mul(areas, scale);
-        const auto step_x = hn::Neg(hn::Mul(dy, scale));
+        const auto step_x = hn::Neg(hn::Mul(sides_of.dy, scale));
         static_assert(offsetof(TriangleSides, dx) == sizeof(sides.inside));
         hn::StoreU(hn::ConcatLowerLower(kFour, step_x, inside), kFour, sides.inside.data());
-        hn::Store(hn::LowerHalf(hn::Mul(dx, scale)), hn::Half<Four>(), sides.dy.data());
+        hn::Store(hn::LowerHalf(hn::Mul(sides_of.dx, scale)), hn::Half<Four>(), sides.dy.data());
     }
 }
 
@@ -99,8 +74,8 @@ void measure_front(const Front& front, const ScreenPacket* packets, const Packet
             for (std::size_t k = 0; k < 3; ++k) {
                 const auto x = set(normals.x[k]);
                 const auto y = set(normals.y[k]);
-                const auto off = hn::Add(hn::Mul(x, hn::Sub(qx, set(form[4 * k]))),
-                                         hn::Mul(y, hn::Sub(qy, set(form[4 * k + 1]))));
+                const auto off = hn::Add(hn::Mul(x, hn::Sub(qx, set(form[k]))),
+                                         hn::Mul(y, hn::Sub(qy, set(form[4 + k]))));
                 const auto nearer = hn::And(won, hn::Lt(off, distance));
                 distance = hn::IfThenElse(nearer, off, distance);
                 nx = hn::IfThenElse(nearer, x, nx);

@@ -63,6 +63,13 @@ void find_union(const BoundsPacket& of, BoundsPacket& packet, int lane) {
 
 // ---- Packets ----
 
+/// So many points at most are tested one by one: that takes less than all sixteen of a front.
+constexpr int kFewPoints = 8;
+
+HWY_INLINE bool is_of_triangles(const ScreenPacket& packet) {
+    return packet.kind == ClusterKind::triangles || packet.kind == ClusterKind::solids;
+}
+
 template <GlyphKind kKind>
 HWY_INLINE GlyphTest<kKind> glyph_test(const ScreenPacket& packet, int lane) {
     const auto a = static_cast<float>(packet.shape.a);
@@ -104,32 +111,58 @@ HWY_INLINE void for_kind(const Basis& basis, const ScreenPacket& packet, const R
     }
 }
 
-bool holds_any(const BoundsPacket& bounds, int lane, const Front& front) {
-    constexpr float kSlack = 1.0F / 64.0F;  // what the place of a point is rounded by, and more
-    const auto left = set(bounds.left[lane] - kSlack);
-    const auto right = set(bounds.right[lane] + kSlack);
-    const auto top = set(bounds.top[lane] - kSlack);
-    const auto bottom = set(bounds.bottom[lane] + kSlack);
-    bool any = false;
+/// What the place of a point is rounded by, and more.
+constexpr float kPlaceSlack = 1.0F / 64.0F;
+
+LaneBits find_reached(const BoundsPacket& bounds, int lane, const Front& front) {
+    const auto left = set(bounds.left[lane] - kPlaceSlack);
+    const auto right = set(bounds.right[lane] + kPlaceSlack);
+    const auto top = set(bounds.top[lane] - kPlaceSlack);
+    const auto bottom = set(bounds.bottom[lane] + kPlaceSlack);
+    const auto depth = set(bounds.depth[lane]);
+    LaneBits reached = 0;
     for (int i = 0; i < kLanes; i += kStep) {
         const auto x = load(front.x, i);
         const auto y = load(front.y, i);
         const auto across = hn::And(hn::Ge(x, left), hn::Le(x, right));
         const auto down = hn::And(hn::Ge(y, top), hn::Le(y, bottom));
-        any = any || !hn::AllFalse(kFloats, hn::And(across, down));
+        const auto before = hn::Lt(depth, load(front.depth, i));
+        reached |= bits_of(hn::And(hn::And(across, down), before)) << static_cast<unsigned>(i);
     }
-    return any;
+    return reached;
+}
+
+/// Tests triangles against a few of the front's points, one by one.
+void intersect_points(const ScreenPacket* packets, std::uint32_t index, LaneBits points,
+                      Front& front) {
+    const ScreenPacket& packet = packets[index];
+    for (; points != 0; points &= points - 1) {
+        const int point = std::countr_zero(points);
+        const float x = front.x[point];
+        const float y = front.y[point];
+        const Window window{x - kPlaceSlack, x + kPlaceSlack, y - kPlaceSlack, y + kPlaceSlack,
+                            front.depth[point]};
+        for (LaneBits lanes = overlap_lanes(packet.bounds, window); lanes != 0;
+             lanes &= lanes - 1) {
+            const auto lane = static_cast<std::uint32_t>(std::countr_zero(lanes));
+            test_point(packet.forms[lane], {packets, index * kLanes + lane}, point, front);
+        }
+    }
+    front.window.farthest = most(front.depth);
 }
 
 void intersect_front(const Basis& basis, const ScreenPacket* packets, std::uint32_t index,
-                     Front& front) {
+                     LaneBits points, Front& front) {
     const ScreenPacket& packet = packets[index];
+    if (is_of_triangles(packet) && std::popcount(points) <= kFewPoints) {
+        return intersect_points(packets, index, points, front);
+    }
     LaneBits lanes = overlap_lanes(packet.bounds, front.window);
     if (lanes == 0) return;
     for_kind(basis, packet, [&](const auto& make) {
         for (; lanes != 0; lanes &= lanes - 1) {
             const int lane = std::countr_zero(lanes);
-            if (!holds_any(packet.bounds, lane, front)) continue;
+            if (find_reached(packet.bounds, lane, front) == 0) continue;
             const auto test = make(packet, lane);
             test({packets, index * kLanes + static_cast<std::uint32_t>(lane)}, front);
         }
@@ -157,54 +190,115 @@ struct CellRange {
     }
 };
 
-/// Those of sixteen primitives.
-struct CellRanges {
+/// The columns and rows of points that sixteen primitives may show at. Where primitives are smaller
+/// than the spacing of points, many have none.
+struct PointRanges {
     Lanes<std::int32_t> left, right, top, bottom;
 
-    HWY_INLINE CellRanges(const BoundsPacket& bounds, const FrontRaster& raster) {
-        const float scale = 1.0F / raster.side;
-        const auto put = [&](const Lanes<float>& at, float from, int count,
-                             Lanes<std::int32_t>& to) {
-            const auto last = set(static_cast<float>(count - 1));
+    HWY_INLINE PointRanges(const BoundsPacket& bounds, const FrontRaster& raster) {
+        // What the place of a point is rounded by, in spacings, and more.
+        constexpr float kSlack = 1.0F / 64.0F;
+        const float scale = kBlockSide / raster.side;
+        const float first = 0.5F * (1.0F - (raster.side - raster.extent) * scale);
+        const auto put = [&](const Lanes<float>& low, const Lanes<float>& high, float from,
+                             int cells, Lanes<std::int32_t>& begin, Lanes<std::int32_t>& end) {
+            const auto last = set(static_cast<float>(cells * kBlockSide - 1));
+            const auto beyond = hn::Add(last, set(1.0F));
             for (int i = 0; i < kLanes; i += kStep) {
-                const auto place = hn::Mul(hn::Sub(load(at, i), set(from)), set(scale));
-                const auto within = hn::Min(hn::Max(place, hn::Zero(kFloats)), last);
-                store(hn::ConvertTo(kIntegers, within), to, i);
+                const auto place = [&](const Lanes<float>& at) {
+                    return hn::Sub(hn::Mul(hn::Sub(load(at, i), set(from)), set(scale)),
+                                   set(first));
+                };
+                const auto least = hn::Ceil(hn::Sub(place(low), set(kSlack)));
+                const auto most = hn::Floor(hn::Add(place(high), set(kSlack)));
+                // Ranges beside the raster stay empty.
+                const auto from_first = hn::Max(hn::Min(least, beyond), hn::Zero(kFloats));
+                const auto to_last = hn::Max(hn::Min(most, last), set(-1.0F));
+                store(hn::ConvertTo(kIntegers, from_first), begin, i);
+                store(hn::ConvertTo(kIntegers, to_last), end, i);
             }
         };
-        put(bounds.left, raster.left, raster.across, left);
-        put(bounds.right, raster.left, raster.across, right);
-        put(bounds.top, raster.top, raster.down, top);
-        put(bounds.bottom, raster.top, raster.down, bottom);
+        put(bounds.left, bounds.right, raster.left, raster.across, left, right);
+        put(bounds.top, bounds.bottom, raster.top, raster.down, top, bottom);
     }
 
-    HWY_INLINE CellRange of(int lane) const {
-        return {left[lane], right[lane], top[lane], bottom[lane]};
+    /// Cells that hold a primitive's points.
+    HWY_INLINE CellRange cells(int lane) const {
+        return {left[lane] / kBlockSide, right[lane] / kBlockSide, top[lane] / kBlockSide,
+                bottom[lane] / kBlockSide};
     }
-    /// Which reach into one cell only.
+    HWY_INLINE Mask any(int i) const {
+        return hn::Not(hn::RebindMask(kFloats, hn::Or(hn::Gt(load(left, i), load(right, i)),
+                                                      hn::Gt(load(top, i), load(bottom, i)))));
+    }
+    /// Which lie in one cell only.
     HWY_INLINE Mask alone(int i) const {
-        return hn::RebindMask(kFloats, hn::And(hn::Eq(load(left, i), load(right, i)),
-                                               hn::Eq(load(top, i), load(bottom, i))));
+        return hn::RebindMask(kFloats, hn::And(hn::Eq(cell(left, i), cell(right, i)),
+                                               hn::Eq(cell(top, i), cell(bottom, i))));
+    }
+    /// Which are so few that each is tested by itself.
+    HWY_INLINE Mask few(int i) const {
+        const auto count = [&](const auto& from, const auto& to) {
+            return hn::Add(hn::Sub(load(to, i), load(from, i)), hn::Set(kIntegers, 1));
+        };
+        return hn::RebindMask(kFloats, hn::Lt(hn::Mul(count(left, right), count(top, bottom)),
+                                              hn::Set(kIntegers, kFewPoints + 1)));
+    }
+
+    /// The cells of columns or rows.
+    static HWY_INLINE Integer cell(Integer of) { return hn::ShiftRight<2>(of); }
+    static HWY_INLINE Integer cell(const Lanes<std::int32_t>& of, int i) {
+        return cell(load(of, i));
     }
 };
 
-/// Whether there is a point of the raster within bounds: where primitives are smaller than the
-/// spacing of points, most of them have none.
-HWY_INLINE Mask holds_point(const BoundsPacket& bounds, const FrontRaster& raster, int i) {
-    // What the place of a point is rounded by, in spacings, and more.
-    constexpr float kSlack = 1.0F / 64.0F;
-    const float scale = kBlockSide / raster.side;
-    const float first = 0.5F * (1.0F - (raster.side - raster.extent) * scale);
-    const auto holds = [&](const Lanes<float>& low, const Lanes<float>& high, float from) {
-        const auto place = [&](const Lanes<float>& at) {
-            return hn::Sub(hn::Mul(hn::Sub(load(at, i), set(from)), set(scale)), set(first));
-        };
-        return hn::Le(hn::Ceil(hn::Sub(place(low), set(kSlack))),
-                      hn::Floor(hn::Add(place(high), set(kSlack))));
+/// The edges of triangles, lane by lane.
+class EdgeLanes {
+  public:
+    HWY_INLINE EdgeLanes(const std::array<FormNumbers, kLanes>& forms, int i) {
+        const auto first = static_cast<std::size_t>(i);
+        x_ = transposed(forms, first, 0);
+        y_ = transposed(forms, first, 4);
+        dx_ = transposed(forms, first, 8);
+        dy_ = transposed(forms, first, 12);
+    }
+
+    /// False only where points lie beyond an edge.
+    HWY_INLINE Mask may_cover(Number qx, Number qy) const {
+        return hn::And(hn::And(may_cover(x_.a, y_.a, dx_.a, dy_.a, qx, qy),
+                               may_cover(x_.b, y_.b, dx_.b, dy_.b, qx, qy)),
+                       may_cover(x_.c, y_.c, dx_.c, dy_.c, qx, qy));
+    }
+
+  private:
+    struct OfThree {
+        Number a, b, c;
     };
-    return hn::And(holds(bounds.left, bounds.right, raster.left),
-                   holds(bounds.top, bounds.bottom, raster.top));
-}
+
+    /// The first three of four numbers of each form.
+    static HWY_INLINE OfThree transposed(const std::array<FormNumbers, kLanes>& forms,
+                                         std::size_t first, std::size_t number) {
+        const auto rows = [&](std::size_t k) {
+            return load_rows(kFloats, &forms[first + k][number], 4 * forms[0].size());
+        };
+        const auto even_low = hn::InterleaveLower(kFloats, rows(0), rows(2));
+        const auto odd_low = hn::InterleaveLower(kFloats, rows(1), rows(3));
+        const auto even_high = hn::InterleaveUpper(kFloats, rows(0), rows(2));
+        const auto odd_high = hn::InterleaveUpper(kFloats, rows(1), rows(3));
+        return {hn::InterleaveLower(kFloats, even_low, odd_low),
+                hn::InterleaveUpper(kFloats, even_low, odd_low),
+                hn::InterleaveLower(kFloats, even_high, odd_high)};
+    }
+
+    static HWY_INLINE Mask may_cover(Number x, Number y, Number dx, Number dy, Number qx,
+                                     Number qy) {
+        const auto slack = hn::Mul(hn::Add(hn::Abs(dx), hn::Abs(dy)), set(-kPlaceSlack));
+        const auto value = hn::Sub(hn::Mul(dx, hn::Sub(qy, y)), hn::Mul(dy, hn::Sub(qx, x)));
+        return hn::Ge(value, slack);
+    }
+
+    OfThree x_, y_, dx_, dy_;
+};
 
 /// Calls `visit(column, row)` for the first cells of windows that cover the range, until it returns
 /// false.
@@ -248,7 +342,10 @@ struct Pairs {
     static constexpr std::size_t kMost = 1024;
     std::array<Lanes<std::uint32_t>, kMost / kLanes + 2> list;  ///< cell * kLanes + lane
     std::size_t count = 0;
-    std::array<std::uint32_t, kMost + kLanes + 1> dirty;  ///< cells
+    /// Of small ones the points: (cell * kLanes + point) * kLanes + lane.
+    std::array<std::uint32_t, kLanes*(kFewPoints + 1)> points;
+    std::size_t point_count = 0;
+    std::array<std::uint32_t, kMost + kLanes*(kFewPoints + 1) + 1> dirty;  ///< cells
     std::size_t dirty_count = 0;
 
     HWY_INLINE bool full() const { return count > kMost; }
@@ -273,11 +370,11 @@ struct Pairs {
 
     /// Lists the cells of those primitives, from the i-th on, that are `alone` in reaching into
     /// one.
-    HWY_INLINE void add_alone(Mask alone, const BoundsPacket& bounds, const CellRanges& ranges,
+    HWY_INLINE void add_alone(Mask alone, const BoundsPacket& bounds, const PointRanges& ranges,
                               const FrontRaster& raster, int i) {
         const Integer cell =
-            hn::Add(hn::Mul(load(ranges.top, i), hn::Set(kIntegers, raster.stride())),
-                    load(ranges.left, i));
+            hn::Add(hn::Mul(ranges.cell(ranges.top, i), hn::Set(kIntegers, raster.stride())),
+                    ranges.cell(ranges.left, i));
         const Number farthest = hn::GatherIndex(kFloats, raster.farthest, cell);
         const Mask live = hn::And(alone, hn::Lt(load(bounds.depth, i), farthest));
         const auto lanes = hn::Iota(kWords, static_cast<std::uint32_t>(i));
@@ -287,21 +384,70 @@ struct Pairs {
         count += packer.count();
     }
 
-    /// Tests what is listed, and brings the farthest depths of its cells up to date.
-    template <class Make>
-    HWY_INLINE void test(const Make& make, const ScreenPacket* packets, std::uint32_t index,
-                         const FrontRaster& raster) {
-        const std::uint32_t* pairs = list[0].data();
-        for (std::size_t k = 0; k < count; ++k) {
-            const std::uint32_t lane = pairs[k] % kLanes;
-            const std::uint32_t cell = pairs[k] / kLanes;
-            dirty[dirty_count] = cell;
-            dirty_count += 1U - raster.dirty[cell];
-            raster.dirty[cell] = 1;
-            const auto primitive = make(packets[index], static_cast<int>(lane));
-            primitive({packets, index * kLanes + lane}, raster.fronts[raster.front_at[cell]]);
+    /// Lists the points of those triangles, from the i-th on, that have `few`, unless they lie
+    /// beyond an edge.
+    HWY_INLINE void add_points(Mask few, const ScreenPacket& packet, const PointRanges& ranges,
+                               const FrontRaster& raster, int i) {
+        if (hn::AllFalse(kFloats, few)) return;
+        const EdgeLanes edges(packet.forms, i);
+        const float spacing = raster.side / kBlockSide;
+        const float inset = 0.5F * (spacing - (raster.side - raster.extent));
+        const auto place = [&](float from, Integer of) {
+            return hn::Add(set(from + inset), hn::Mul(hn::ConvertTo(kFloats, of), set(spacing)));
+        };
+        const auto one = hn::Set(kIntegers, 1);
+        const auto in_cell = hn::Set(kIntegers, kBlockSide - 1);
+        const auto lanes = hn::Iota(kIntegers, i);
+        const Integer left = load(ranges.left, i);
+        const Integer right = load(ranges.right, i);
+        const Integer bottom = load(ranges.bottom, i);
+        Integer column = left;
+        Integer row = load(ranges.top, i);
+        do {
+            const Mask live =
+                hn::And(few, edges.may_cover(place(raster.left, column), place(raster.top, row)));
+            const Integer cell =
+                hn::Add(hn::Mul(PointRanges::cell(row), hn::Set(kIntegers, raster.stride())),
+                        PointRanges::cell(column));
+            const Integer point =
+                hn::Add(hn::ShiftLeft<2>(hn::And(row, in_cell)), hn::And(column, in_cell));
+            const Integer all =
+                hn::Add(hn::ShiftLeft<8>(cell), hn::Add(hn::ShiftLeft<4>(point), lanes));
+            const LanePacker packer(live);
+            hn::StoreU(packer.pack(kWords, hn::BitCast(kWords, all)), kWords,
+                       points.data() + point_count);
+            point_count += packer.count();
+            const auto ends = hn::Eq(column, right);
+            column = hn::IfThenElse(ends, left, hn::Add(column, one));
+            row = hn::IfThenElse(ends, hn::Add(row, one), row);
+            few = hn::AndNot(hn::RebindMask(kFloats, hn::Gt(row, bottom)), few);
+        } while (!hn::AllFalse(kFloats, few));
+    }
+
+    /// Tests the points that are listed.
+    HWY_INLINE void test_points(const ScreenPacket* packets, std::uint32_t index,
+                                const FrontRaster& raster) {
+        const ScreenPacket& packet = packets[index];
+        for (std::size_t k = 0; k < point_count; ++k) {
+            const std::uint32_t lane = points[k] % kLanes;
+            const std::uint32_t point = points[k] / kLanes % kLanes;
+            const std::uint32_t cell = points[k] / (kLanes * kLanes);
+            if (!(packet.bounds.depth[static_cast<int>(lane)] < raster.farthest[cell])) continue;
+            mark(cell, raster);
+            test_point(packet.forms[lane], {packets, index * kLanes + lane},
+                       static_cast<int>(point), raster.fronts[raster.front_at[cell]]);
         }
-        count = 0;
+        point_count = 0;
+    }
+
+    HWY_INLINE void mark(std::uint32_t cell, const FrontRaster& raster) {
+        dirty[dirty_count] = cell;
+        dirty_count += 1U - raster.dirty[cell];
+        raster.dirty[cell] = 1;
+    }
+
+    /// Brings the farthest depths of cells up to date.
+    HWY_INLINE void update(const FrontRaster& raster) {
         for (std::size_t k = 0; k < dirty_count; ++k) {
             const std::uint32_t cell = dirty[k];
             raster.dirty[cell] = 0;
@@ -309,32 +455,49 @@ struct Pairs {
         }
         dirty_count = 0;
     }
+
+    /// Tests what is listed, and brings its cells up to date.
+    template <class Make>
+    HWY_INLINE void test(const Make& make, const ScreenPacket* packets, std::uint32_t index,
+                         const FrontRaster& raster) {
+        const std::uint32_t* pairs = list[0].data();
+        for (std::size_t k = 0; k < count; ++k) {
+            const std::uint32_t lane = pairs[k] % kLanes;
+            const std::uint32_t cell = pairs[k] / kLanes;
+            mark(cell, raster);
+            const auto primitive = make(packets[index], static_cast<int>(lane));
+            primitive({packets, index * kLanes + lane}, raster.fronts[raster.front_at[cell]]);
+        }
+        count = 0;
+        update(raster);
+    }
 };
 
 void intersect_raster(const Basis& basis, const ScreenPacket* packets, std::uint32_t index,
                       const FrontRaster& raster) {
     const ScreenPacket& packet = packets[index];
-    const float width = static_cast<float>(raster.across) * raster.side;
-    const float height = static_cast<float>(raster.down) * raster.side;
-    const Window window{raster.left, raster.left + width, raster.top, raster.top + height,
-                        kInfinity};
-    const CellRanges ranges(packet.bounds, raster);
+    const PointRanges ranges(packet.bounds, raster);
     Pairs pairs;
     LaneBits others = 0;  // that reach into several cells
     for (int i = 0; i < kLanes; i += kStep) {
-        const Mask seen =
-            hn::And(overlap_of(packet.bounds, window, i), holds_point(packet.bounds, raster, i));
+        Mask seen = ranges.any(i);
+        if (is_of_triangles(packet)) {
+            const Mask few = hn::And(seen, ranges.few(i));
+            pairs.add_points(few, packet, ranges, raster, i);
+            seen = hn::AndNot(few, seen);
+        }
         const Mask alone = hn::And(seen, ranges.alone(i));
         pairs.add_alone(alone, packet.bounds, ranges, raster, i);
         others |= bits_of(hn::AndNot(alone, seen)) << static_cast<unsigned>(i);
     }
-    if (pairs.count == 0 && others == 0) return;
+    pairs.test_points(packets, index, raster);
+    if (pairs.count == 0 && others == 0) return pairs.update(raster);
     for_kind(basis, packet, [&](const auto& make) {
         for (LaneBits lanes = others; lanes != 0; lanes &= lanes - 1) {
             const int lane = std::countr_zero(lanes);
             const Reach reach(packet.bounds, lane);
             const auto primitive = make(packet, lane);
-            for_windows(ranges.of(lane), [&](int column, int row) {
+            for_windows(ranges.cells(lane), [&](int column, int row) {
                 pairs.add(primitive, lane, reach, raster, column, row);
                 if (pairs.full()) pairs.test(make, packets, index, raster);
                 return true;
@@ -486,7 +649,7 @@ HWY_EXPORT(find_union);
 HWY_EXPORT(intersect_front);
 HWY_EXPORT(intersect_raster);
 HWY_EXPORT(raster_farthest);
-HWY_EXPORT(holds_any);
+HWY_EXPORT(find_reached);
 HWY_EXPORT(raster_matters);
 HWY_EXPORT(start_front);
 HWY_EXPORT(start_raster);
@@ -499,8 +662,9 @@ void set_union(const BoundsPacket& of, BoundsPacket& packet, int lane) {
     HWY_DYNAMIC_DISPATCH(find_union)(of, packet, lane);
 }
 
-void intersect(const Basis& basis, const ScreenPacket* packets, std::uint32_t index, Front& front) {
-    HWY_DYNAMIC_DISPATCH(intersect_front)(basis, packets, index, front);
+void intersect(const Basis& basis, const ScreenPacket* packets, std::uint32_t index,
+               LaneBits points, Front& front) {
+    HWY_DYNAMIC_DISPATCH(intersect_front)(basis, packets, index, points, front);
 }
 
 void intersect(const Basis& basis, const ScreenPacket* packets, std::uint32_t index,
@@ -512,8 +676,8 @@ float farthest_of(const FrontRaster& raster) {
     return HWY_DYNAMIC_DISPATCH(raster_farthest)(raster);
 }
 
-bool matters(const BoundsPacket& bounds, int lane, const Front& front) {
-    return HWY_DYNAMIC_DISPATCH(holds_any)(bounds, lane, front);
+LaneBits reached(const BoundsPacket& bounds, int lane, const Front& front) {
+    return HWY_DYNAMIC_DISPATCH(find_reached)(bounds, lane, front);
 }
 
 bool matters(const BoundsPacket& bounds, int lane, const FrontRaster& raster) {

@@ -64,8 +64,10 @@ void set_union(const BoundsPacket& of, BoundsPacket& packet, int lane);
 /// Scene units, in a scene of size 1: more than the depths of flat surfaces are rounded by.
 inline constexpr float kCoincident = 5e-7F;
 
-/// Tests the front's rays against those primitives of packet `index` that lie in its window.
-void intersect(const Basis& basis, const ScreenPacket* packets, std::uint32_t index, Front& front);
+/// Tests the front's rays against those primitives of packet `index` that may lie before what they
+/// see. `points`: those that the packet's bounds reach, see below.
+void intersect(const Basis& basis, const ScreenPacket* packets, std::uint32_t index,
+               LaneBits points, Front& front);
 
 /// The same for all fronts of a raster.
 void intersect(const Basis& basis, const ScreenPacket* packets, std::uint32_t index,
@@ -73,8 +75,8 @@ void intersect(const Basis& basis, const ScreenPacket* packets, std::uint32_t in
 
 /// Largest of the cells' farthest depths.
 float farthest_of(const FrontRaster& raster);
-/// Whether bounds hold a point of a front.
-bool matters(const BoundsPacket& bounds, int lane, const Front& front);
+/// Which points of a front bounds hold, before what these see.
+LaneBits reached(const BoundsPacket& bounds, int lane, const Front& front);
 /// Whether they reach into a cell, before all that it sees.
 bool matters(const BoundsPacket& bounds, int lane, const FrontRaster& raster);
 

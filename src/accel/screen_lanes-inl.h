@@ -3,6 +3,7 @@
 #include <array>
 
 #include "accel/screen_kernels.h"
+#include "accel/side_by_side-inl.h"
 #include "base/lanes-inl.h"
 
 #if defined(INKTRACE_SCREEN_LANES_INL_H) == defined(HWY_TARGET_TOGGLE)
@@ -25,11 +26,10 @@ HWY_INLINE SphereForm sphere_form(const FormNumbers& n) {
 }
 
 HWY_INLINE TriangleForm triangle_form(const FormNumbers& n) {
-    return {{{{n[0], n[1], n[2], n[3]}, {n[4], n[5], n[6], n[7]}, {n[8], n[9], n[10], n[11]}}},
-            n[12],
-            n[13],
-            n[14],
-            n[15],
+    return {{n[0], n[1], n[2], n[3]},
+            {n[4], n[5], n[6], n[7]},
+            {n[8], n[9], n[10], n[11]},
+            {n[12], n[13], n[14], n[15]},
             n[16],
             n[17],
             n[18],
@@ -37,6 +37,23 @@ HWY_INLINE TriangleForm triangle_form(const FormNumbers& n) {
             n[20],
             n[21]};
 }
+
+/// The lines of a TriangleForm side by side: of its three edges, and of its depth.
+struct TriangleLines {
+    hn::Vec<Four> x, y, dx, dy;
+
+    HWY_INLINE explicit TriangleLines(const FormNumbers& n)
+        : x(hn::LoadU(kFour, n.data())),
+          y(hn::LoadU(kFour, n.data() + 4)),
+          dx(hn::LoadU(kFour, n.data() + 8)),
+          dy(hn::LoadU(kFour, n.data() + 12)) {}
+
+    /// e_k at a point.
+    HWY_INLINE hn::Vec<Four> at(float qx, float qy) const {
+        return hn::Sub(hn::Mul(dx, hn::Sub(hn::Set(kFour, qy), y)),
+                       hn::Mul(dy, hn::Sub(hn::Set(kFour, qx), x)));
+    }
+};
 
 HWY_INLINE GlyphForm glyph_form(const FormNumbers& n) {
     return {n[0], n[1], n[2], {n[3], n[4], n[5]}, {n[6], n[7], n[8]}, {n[9], n[10], n[11]}, n[12]};

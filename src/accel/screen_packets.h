@@ -44,16 +44,13 @@ struct SphereForm {
     float x, y, z;     ///< its centre, right, down and forward from the projection's start
 };
 
-/// A triangle as a camera sees it. Edge k is dx (q.y - y) - dy (q.x - x) >= 0 on the inside. Every
-/// edge starts at that of its ends which comes first on the screen, so that the triangles on its
-/// two sides compute the same number, up to its sign.
+/// A triangle as a camera sees it. With e_k = dx_k (q.y - y_k) - dy_k (q.x - x_k), its three edges
+/// are e_k >= 0 on the inside. Every edge starts at that of its ends which comes first on the
+/// screen, so that the triangles on its two sides compute the same number, up to its sign. Its depth
+/// is z + e_3 / (w + wx q.x + wy q.y), within [near, far].
 struct TriangleForm {
-    struct Edge {
-        float x, y, dx, dy;
-    };
-    std::array<Edge, 3> edges;
-    /// depth = z + (gx (q.x - u) + gy (q.y - v)) / (w + wx q.x + wy q.y), within [near, far]
-    float u, v, z, gx, gy, w, wx, wy, near, far;
+    std::array<float, 4> x, y, dx, dy;
+    float z, w, wx, wy, near, far;
 };
 
 /// A glyph as a camera sees it: in the coordinates of its unit shape, with d = q - (u, v), the ray

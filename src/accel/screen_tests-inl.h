@@ -72,6 +72,21 @@ HWY_INLINE void keep_nearer(Number depth, Mask covered, float slack, Name name, 
     if (HWY_UNLIKELY(!hn::AllFalse(kFloats, around))) settle(depth, around, name, i, front);
 }
 
+/// The same of one lane.
+HWY_INLINE void keep_nearer(float depth, bool covered, float slack, Name name, int lane,
+                            Front& front) {
+    const float before = front.depth[lane];
+    const std::uint32_t winner = front.winner[lane];
+    const bool nearer = covered & (depth < before - slack);
+    front.depth[lane] = nearer ? depth : before;
+    front.winner[lane] = nearer ? name.winner : winner;
+    const bool around = covered & !nearer & (depth <= before + slack);
+    if (HWY_UNLIKELY(around) && name.rank(name.winner) < name.rank(winner)) {
+        front.depth[lane] = depth;
+        front.winner[lane] = name.winner;
+    }
+}
+
 // ---- Spheres ----
 
 struct SphereTest {
@@ -110,9 +125,9 @@ struct SphereTest {
 
 // ---- Triangles ----
 
-HWY_INLINE Number edge_value(const TriangleForm::Edge& edge, Number qx, Number qy) {
-    return hn::Sub(hn::Mul(set(edge.dx), hn::Sub(qy, set(edge.y))),
-                   hn::Mul(set(edge.dy), hn::Sub(qx, set(edge.x))));
+HWY_INLINE Number line_value(const TriangleForm& form, std::size_t k, Number qx, Number qy) {
+    return hn::Sub(hn::Mul(set(form.dx[k]), hn::Sub(qy, set(form.y[k]))),
+                   hn::Mul(set(form.dy[k]), hn::Sub(qx, set(form.x[k]))));
 }
 
 /// Share of its terms that an edge's value may be rounded by.
@@ -130,11 +145,9 @@ struct TriangleTest {
         const float width = reach.right - reach.left;
         const float height = reach.bottom - reach.top;
         const float slack = kRounding * (width * (height + extent) + height * (width + extent));
-        for (const TriangleForm::Edge& edge : form.edges) {
-            const auto along = hn::Mul(set(edge.dx), hn::Sub(top, set(edge.y)));
-            const auto across = hn::Mul(set(edge.dy), hn::Sub(left, set(edge.x)));
-            const float most = (std::max(edge.dx, 0.0F) - std::min(edge.dy, 0.0F)) * extent;
-            cells = hn::And(cells, hn::Ge(hn::Sub(along, across), set(-(most + slack))));
+        for (std::size_t k = 0; k < 3; ++k) {
+            const float most = (std::max(form.dx[k], 0.0F) - std::min(form.dy[k], 0.0F)) * extent;
+            cells = hn::And(cells, hn::Ge(line_value(form, k, left, top), set(-(most + slack))));
         }
         return cells;
     }
@@ -143,12 +156,11 @@ struct TriangleTest {
         for (int i = 0; i < kLanes; i += kStep) {
             const auto qx = load(front.x, i);
             const auto qy = load(front.y, i);
-            const auto e0 = edge_value(form.edges[0], qx, qy);
-            const auto e1 = edge_value(form.edges[1], qx, qy);
-            const auto e2 = edge_value(form.edges[2], qx, qy);
+            const auto e0 = line_value(form, 0, qx, qy);
+            const auto e1 = line_value(form, 1, qx, qy);
+            const auto e2 = line_value(form, 2, qx, qy);
             const auto covered = hn::Ge(hn::Min(hn::Min(e0, e1), e2), hn::Zero(kFloats));
-            const auto rise = hn::Add(hn::Mul(set(form.gx), hn::Sub(qx, set(form.u))),
-                                      hn::Mul(set(form.gy), hn::Sub(qy, set(form.v))));
+            const auto rise = line_value(form, 3, qx, qy);
             const auto facing =
                 hn::Add(hn::Add(set(form.w), hn::Mul(set(form.wx), qx)), hn::Mul(set(form.wy), qy));
             const auto plane = hn::Add(set(form.z), hn::Div(rise, facing));
@@ -157,6 +169,22 @@ struct TriangleTest {
         }
     }
 };
+
+/// The same at one point of the front, whose lines are told side by side.
+HWY_INLINE void test_point(const FormNumbers& numbers, Name name, int point, Front& front) {
+    const TriangleForm form = triangle_form(numbers);
+    const float qx = front.x[point];
+    const float qy = front.y[point];
+    const auto lines = TriangleLines(numbers).at(qx, qy);
+    std::uint8_t inside[8];
+    hn::StoreMaskBits(kFour, hn::Ge(lines, hn::Zero(kFour)), inside);
+    constexpr unsigned kEdges = 0b111U;
+    const float facing = (form.w + form.wx * qx) + form.wy * qy;
+    const float plane = form.z + hn::ExtractLane(lines, 3) / facing;
+    const float not_before = plane > form.near ? plane : form.near;
+    const float depth = not_before < form.far ? not_before : form.far;
+    keep_nearer(depth, (inside[0] & kEdges) == kEdges, kCoincident, name, point, front);
+}
 
 // ---- Glyphs ----
 

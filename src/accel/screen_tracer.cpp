@@ -245,9 +245,11 @@ void ScreenTileTracer::find_front(Front& front) {
             const std::size_t i = k * kLanes + static_cast<std::size_t>(std::countr_zero(lanes));
             if (!(candidates_.depth(i) < front.window.farthest)) return;
             // Points may be far apart.
-            if (!matters(candidates_.bounds(k), static_cast<int>(i % kLanes), front)) continue;
+            const LaneBits points =
+                ink::reached(candidates_.bounds(k), static_cast<int>(i % kLanes), front);
+            if (points == 0) continue;
             const std::uint32_t packet = packet_of(i);
-            ink::intersect(view_.basis, store_.packets(), packet, front);
+            ink::intersect(view_.basis, store_.packets(), packet, points, front);
         }
     }
 }

@@ -12,7 +12,8 @@ namespace ink {
 /// form: an ellipse for a sphere, three edges for a triangle; and rays in the coordinates of a
 /// glyph are an affine function of the screen. A tile finds the clusters whose screen bounds reach
 /// it, nearest first. The blocks of a lattice are traced cluster by cluster, other points packet by
-/// packet, sixteen points by one primitive at a time, up to the first cluster behind what is found.
+/// packet, sixteen points by one primitive at a time, up to the first cluster behind what is found;
+/// triangles that may show at a few points only, point by point.
 ///
 /// The clusters must outlive the tracer. The projection must see all of the scene. Positions on the
 /// screen are rounded once, from double precision, relative to the picture's centre: outlines are

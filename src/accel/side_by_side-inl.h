@@ -19,12 +19,13 @@ namespace ink::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
+using Four = hn::FixedTag<float, 4>;
+constexpr Four kFour;
+
 /// The first `count` numbers, a multiple of four, lane by lane.
 template <std::size_t kNumbers>
 HWY_INLINE void lay_side_by_side(const std::array<Lanes<float>, kNumbers>& form, std::size_t count,
                                  std::array<std::array<float, kNumbers>, kLanes>& forms) {
-    using Four = hn::FixedTag<float, 4>;
-    constexpr Four kFour;
     for (std::size_t k = 0; k < count; k += 4) {
         for (std::size_t lane = 0; lane < kLanes; lane += 4) {
             const auto a = hn::Load(kFour, form[k].data() + lane);

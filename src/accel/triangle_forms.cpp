@@ -34,22 +34,23 @@ HWY_INLINE void keep(const Corner& corner, int i, ScreenCorners::Corner& to) {
     put(corner.p.z, to.depth, i);
 }
 
-/// Edge from corner `a` to corner `b`, its inside on the left if `side` is 1, else -1.
-HWY_INLINE void lay_edge(const Corner& a, const Corner& b, Half side, int i, Lanes<float>* edge) {
+/// Edge k of a TriangleForm from corner `a` to corner `b`, its inside on the left if `side` is 1,
+/// else -1.
+HWY_INLINE void lay_edge(const Corner& a, const Corner& b, Half side, int i, std::size_t k,
+                         FormLanes& form) {
     const auto swap = hn::Or(hn::Lt(b.u, a.u), hn::And(hn::Eq(b.u, a.u), hn::Lt(b.v, a.v)));
     const Half sign = hn::IfThenElse(swap, hn::Neg(side), side);
     const Half x0 = hn::IfThenElse(swap, b.u, a.u);
     const Half y0 = hn::IfThenElse(swap, b.v, a.v);
     const Half x1 = hn::IfThenElse(swap, a.u, b.u);
     const Half y1 = hn::IfThenElse(swap, a.v, b.v);
-    put(x0, edge[0], i);
-    put(y0, edge[1], i);
-    put(hn::Mul(sign, hn::Sub(x1, x0)), edge[2], i);
-    put(hn::Mul(sign, hn::Sub(y1, y0)), edge[3], i);
+    put(x0, form[k], i);
+    put(y0, form[4 + k], i);
+    put(hn::Mul(sign, hn::Sub(x1, x0)), form[8 + k], i);
+    put(hn::Mul(sign, hn::Sub(y1, y0)), form[12 + k], i);
 }
 
-/// Brings the corner that comes first on the screen to the front, so that triangles with the same
-/// corners compute the same plane in whatever order these are given.
+/// Brings the corner that comes first on the screen to the front.
 HWY_INLINE void order(Corner& first, Corner& second) {
     const auto swap = hn::Or(hn::Lt(second.u, first.u),
                              hn::And(hn::Eq(second.u, first.u), hn::Lt(second.v, first.v)));
@@ -67,19 +68,22 @@ HWY_INLINE void order(Corner& first, Corner& second) {
     exchange(wide, first.p.z, second.p.z);
 }
 
+/// Triangles with the same corners, of which the first one comes first on the screen, compute the
+/// same plane: where the other two change places, all that a depth is the ratio of changes its
+/// sign.
 HWY_INLINE void lay_plane(const Basis& basis, const Corner& a, const Corner& b, const Corner& c,
-                          int i, Lanes<float>* plane) {
+                          int i, FormLanes& form) {
     const Triple n = cross(difference(b.p, a.p), difference(c.p, a.p));
     // The ray at depth a.z is this far from corner a, a pixel of q.
     const Double step = pixel_at(basis, a.p.z);
-    put(a.u, plane[0], i);
-    put(a.v, plane[1], i);
-    put(a.p.z, plane[2], i);
-    put(hn::Neg(hn::Mul(step, n.x)), plane[3], i);
-    put(hn::Neg(hn::Mul(step, n.y)), plane[4], i);
-    put(n.z, plane[5], i);
-    put(hn::Mul(n.x, number(basis.slope_step)), plane[6], i);
-    put(hn::Mul(n.y, number(basis.slope_step)), plane[7], i);
+    put(a.u, form[3], i);
+    put(a.v, form[7], i);
+    put(hn::Neg(hn::Mul(step, n.y)), form[11], i);
+    put(hn::Mul(step, n.x), form[15], i);
+    put(a.p.z, form[16], i);
+    put(n.z, form[17], i);
+    put(hn::Mul(n.x, number(basis.slope_step)), form[18], i);
+    put(hn::Mul(n.y, number(basis.slope_step)), form[19], i);
 }
 
 void lay_triangles(Basis basis, const TriangleLanes& triangles, ScreenPacket& packet,
@@ -103,9 +107,9 @@ void lay_triangles(Basis basis, const TriangleLanes& triangles, ScreenPacket& pa
         put(rounded_area, corners.area, i);
         const Half side = hn::IfThenElse(hn::Lt(rounded_area, hn::Zero(kHalves)), number_f(-1.0F),
                                          number_f(1.0F));
-        lay_edge(a, b, side, i, &form[0]);
-        lay_edge(b, c, side, i, &form[4]);
-        lay_edge(c, a, side, i, &form[8]);
+        lay_edge(a, b, side, i, 0, form);
+        lay_edge(b, c, side, i, 1, form);
+        lay_edge(c, a, side, i, 2, form);
         const Half nearest = rounded(hn::Min(hn::Min(a.p.z, b.p.z), c.p.z));
         put(nearest, form[20], i);
         put(hn::Max(hn::Max(a.p.z, b.p.z), c.p.z), form[21], i);
@@ -116,9 +120,8 @@ void lay_triangles(Basis basis, const TriangleLanes& triangles, ScreenPacket& pa
         put_bounds(left, hn::Max(hn::Max(a.u, b.u), c.u), hn::Min(hn::Min(a.v, b.v), c.v),
                    hn::Max(hn::Max(a.v, b.v), c.v), nearest, i, packet.bounds);
         order(a, b);
-        order(b, c);
-        order(a, b);
-        lay_plane(basis, a, b, c, i, &form[12]);
+        order(a, c);
+        lay_plane(basis, a, b, c, i, form);
     }
     lay_side_by_side(form, 24, packet.forms);
 }
