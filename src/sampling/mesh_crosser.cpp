@@ -269,28 +269,37 @@ std::uint32_t target_of(SurfaceKey from, SurfaceKey to) {
 
 }  // namespace
 
-/// From both ends of each pair at once, although the first walk may tell all: the second waits for
-/// the mesh together with others.
+/// From the first end of each pair, or the second where the first sees nothing: all at once, as
+/// each walk waits for the mesh. Then from the second, where the first walk does not tell all.
 void MeshCrosser::walk_from_ends(std::span<const SeenPair> pairs) {
     memory_.clear();
     ways_.clear();
-    walks_.clear();
     first_ways_.assign(pairs.size(), kNoWay);
     second_ways_.assign(pairs.size(), kNoWay);
-    const auto add = [&](std::vector<std::uint32_t>& ways, std::uint32_t pair, SurfaceKey from,
-                         SurfaceKey to, bool backwards) {
+    const auto add = [&](std::uint32_t k, bool first) {
+        const SurfaceKey from = first ? pairs[k].first : pairs[k].second;
+        const SurfaceKey to = first ? pairs[k].second : pairs[k].first;
         if (from.object == SurfaceKey::kNothing) return;
-        ways[pair] = static_cast<std::uint32_t>(walks_.size());
-        walks_.push_back({pair, from, target_of(from, to), kWayLimit, backwards});
+        (first ? first_ways_ : second_ways_)[k] =
+            static_cast<std::uint32_t>(ways_.size() + walks_.size());
+        walks_.push_back({k, from, target_of(from, to), kWayLimit, !first});
     };
+    const auto walk = [&] {
+        meshes_.walk(walks_, lines_, memory_, ways_);
+        walks_.clear();
+    };
+    walks_.clear();
     for (std::uint32_t k = 0; k < pairs.size(); ++k) {
-        const SurfaceKey first = pairs[k].first;
-        const SurfaceKey second = pairs[k].second;
-        if (first == second) continue;
-        add(first_ways_, k, first, second, false);
-        add(second_ways_, k, second, first, true);
+        if (pairs[k].first == pairs[k].second) continue;
+        add(k, pairs[k].first.object != SurfaceKey::kNothing);
     }
-    meshes_.walk(walks_, lines_, memory_, ways_);
+    walk();
+    for (std::uint32_t k = 0; k < pairs.size(); ++k) {
+        if (first_ways_[k] == kNoWay) continue;
+        const WalkEnd end = ways_[first_ways_[k]].end();
+        if (end != WalkEnd::arrived && end != WalkEnd::unknown) add(k, false);
+    }
+    walk();
 }
 
 /// Adds what rays past the ends of some pairs may see.
