@@ -80,10 +80,17 @@ class Walks {
 
         triangle_ = own(starts.triangle);
         edge_ = hn::Mul(triangle_, set(3.0));
+        fetch(corners_, edge_);
+        fetch(twins_, edge_);
+    }
+
+    /// Asks for the corners of the first triangle.
+    HWY_INLINE void look_around() {
         for (std::size_t k = 0; k < 3; ++k) {
             const Number edge = hn::Add(edge_, set(static_cast<double>(k)));
             corner_[k] = corner(edge);
             twin_[k] = twin(edge);
+            fetch(vertices_, hn::Mul(corner_[k], set(3.0)));
         }
     }
 
@@ -115,6 +122,7 @@ class Walks {
                   row.nearness.data() + i_);
         store_whole(edge_, row.edge, i_);
         store_whole(triangle_, row.triangle, i_);
+        fetch_behind();
     }
 
     HWY_INLINE bool goes_on() const { return !hn::AllFalse(kDoubles, active_); }
@@ -136,6 +144,7 @@ class Walks {
         corner_[2] = corner(before_);
         twin_[1] = twin(after_);
         twin_[2] = twin(before_);
+        fetch(vertices_, hn::Mul(corner_[2], set(3.0)));
     }
 
     /// Either over the edge at hand, through the triangle behind it, to the edge it is left by; or
@@ -168,6 +177,7 @@ class Walks {
         most_ = hn::IfThenElse(on, hn::Max(most_, next.at), most_);
         arrived_ = hn::And(on, hn::Eq(triangle_, own(starts_->target)));
         active_ = on;
+        fetch_behind();
     }
 
     HWY_INLINE void finish(WalkEnds& ends) const {
@@ -183,6 +193,21 @@ class Walks {
     }
 
   private:
+    /// Asks for the triangle behind the edge at hand ahead.
+    HWY_INLINE void fetch_behind() const {
+        const Number behind = hn::Max(hop_.twin, hn::Zero(kDoubles));
+        fetch(corners_, behind);
+        fetch(twins_, behind);
+    }
+
+    /// Asks for numbers of an array ahead.
+    template <class T>
+    HWY_INLINE static void fetch(const T* array, Number at) {
+        alignas(64) std::int32_t places[kStep];
+        hn::Store(to_integers(at), kIntegers, places);
+        for (std::size_t k = 0; k < hn::Lanes(kDoubles); ++k) __builtin_prefetch(array + places[k]);
+    }
+
     HWY_INLINE Number own(const WalkNumbers& numbers) const {
         return hn::Load(kDoubles, numbers.data() + i_);
     }
@@ -278,6 +303,7 @@ void walk(const Mesh& mesh, const WayView& view, std::span<const WalkStarts> sta
     for (std::size_t k = 0; k < count; ++k) {
         walks[k].start(mesh, view, starts[k / kParts], k % kParts * kStep);
     }
+    for (std::size_t k = 0; k < count; ++k) walks[k].look_around();
     for (std::size_t k = 0; k < count; ++k) walks[k].begin(rows[k / kParts][0]);
     bool any = true;
     for (std::size_t row = 1; any; ++row) {
