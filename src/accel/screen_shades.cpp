@@ -1,4 +1,6 @@
+#include <array>
 #include <bit>
+#include <cstddef>
 
 #include "accel/screen_kernels.h"
 
@@ -13,6 +15,43 @@
 
 HWY_BEFORE_NAMESPACE();
 namespace ink::HWY_NAMESPACE {
+
+/// Of lanes that saw nothing.
+alignas(64) constexpr std::array<float, ShadeNumbers::kCount> kNothing = [] {
+    std::array<float, ShadeNumbers::kCount> numbers{};
+    numbers[ShadeNumbers::kObject] = std::bit_cast<float>(kNoObject);
+    numbers[ShadeNumbers::kPrimitive] = std::bit_cast<float>(kNoObject);
+    return numbers;
+}();
+
+/// Four numbers from the first of a vector's places, then from every fourth one after it.
+template <class Tag>
+HWY_INLINE hn::Vec<Tag> load_fours(Tag tag, const float* const* from, std::size_t number) {
+    if constexpr (hn::MaxLanes(Tag()) <= 4) {
+        return hn::LoadU(tag, *from + number);
+    } else {
+        const hn::Half<Tag> half;
+        return hn::Combine(tag, load_fours(half, from + hn::MaxLanes(half), number),
+                           load_fours(half, from, number));
+    }
+}
+
+/// Four numbers that follow each other in each lane's place.
+struct FourLanes {
+    Number a, b, c, d;
+
+    HWY_INLINE FourLanes(const float* const* from, std::size_t number) {
+        const auto rows = [&](int k) { return load_fours(kFloats, from + k, number); };
+        const auto even_low = hn::InterleaveLower(kFloats, rows(0), rows(2));
+        const auto odd_low = hn::InterleaveLower(kFloats, rows(1), rows(3));
+        const auto even_high = hn::InterleaveUpper(kFloats, rows(0), rows(2));
+        const auto odd_high = hn::InterleaveUpper(kFloats, rows(1), rows(3));
+        a = hn::InterleaveLower(kFloats, even_low, odd_low);
+        b = hn::InterleaveUpper(kFloats, even_low, odd_low);
+        c = hn::InterleaveLower(kFloats, even_high, odd_high);
+        d = hn::InterleaveUpper(kFloats, even_high, odd_high);
+    }
+};
 
 /// What some lanes of a packet saw, in registers as long as winners are added.
 struct Seen {
@@ -49,6 +88,27 @@ struct Seen {
         primitive = hn::IfThenElse(own, number(S::kPrimitive), primitive);
     }
 
+    /// What each lane saw, by the numbers of its winner, or `kNothing`.
+    HWY_INLINE Seen(const float* const* shades, Number qx, Number qy) {
+        using S = ShadeNumbers;
+        const FourLanes first(shades, 0);
+        const FourLanes second(shades, 4);
+        const FourLanes third(shades, 8);
+        const FourLanes fourth(shades, 12);
+        static_assert(S::kRight == 3 && S::kDown == 6 && S::kU == 9 && S::kFacet == 11);
+        static_assert(S::kPrimitive == 14 && S::kObject == 15);
+        const auto dx = hn::Sub(qx, third.b);
+        const auto dy = hn::Sub(qy, third.c);
+        const auto linear = [&](Number n, Number right, Number down) {
+            return hn::Add(hn::Add(n, hn::Mul(right, dx)), hn::Mul(down, dy));
+        };
+        normal = {linear(first.a, first.d, second.c), linear(first.b, second.a, second.d),
+                  linear(first.c, second.b, third.a)};
+        facet = {third.d, fourth.a, fourth.b};
+        primitive = hn::BitCast(kWords, fourth.c);
+        object = hn::BitCast(kWords, fourth.d);
+    }
+
     /// As interpolate_normals: on the facet's side, which stands in where normals cancel.
     HWY_INLINE Vectors unit_normal() const {
         const auto squared = dot(normal, normal);
@@ -61,6 +121,23 @@ struct Seen {
     }
 };
 
+/// So many winners are told one by one, in less time than those of all lanes.
+constexpr int kFewWinners = 3;
+
+/// Lane by lane, of some lanes from one on.
+HWY_INLINE Seen see_each(const Front& front, LaneBits hit, const PacketShades* shades, Number qx,
+                         Number qy, int i) {
+    std::array<const float*, kStep> from;
+    for (int n = 0; n < kStep; ++n) {
+        const std::uint32_t winner = front.winner[i + n];
+        from[static_cast<std::size_t>(n)] =
+            (hit >> static_cast<unsigned>(n) & 1U) != 0
+                ? shades[winner / kLanes].numbers[winner % kLanes].data()
+                : kNothing.data();
+    }
+    return {from.data(), qx, qy};
+}
+
 HWY_INLINE void see_front(const RayFloats& rays, const Front& front, const PacketShades* shades,
                           HitPacket& hits, NormalPacket& normals, PlacePacket* places) {
     for (int i = 0; i < kLanes; i += kStep) {
@@ -70,7 +147,12 @@ HWY_INLINE void see_front(const RayFloats& rays, const Front& front, const Packe
         const auto qy = load(front.y, i);
         const auto winners = load(front.winner, i);
         Seen seen;
-        for (LaneBits left = bits_of(hit); left != 0;) {
+        int added = 0;
+        for (LaneBits left = bits_of(hit); left != 0; ++added) {
+            if (added == kFewWinners) {
+                seen = see_each(front, bits_of(hit), shades, qx, qy, i);
+                break;
+            }
             const std::uint32_t winner = front.winner[i + std::countr_zero(left)];
             const auto own =
                 hn::And(hn::RebindMask(kFloats, hn::Eq(winners, hn::Set(kWords, winner))), hit);

@@ -3,6 +3,7 @@
 
 #include <array>
 
+#include "base/block_rows-inl.h"
 #include "base/lanes.h"
 
 #if defined(INKTRACE_SIDE_BY_SIDE_INL_H) == defined(HWY_TARGET_TOGGLE)
@@ -26,20 +27,26 @@ constexpr Four kFour;
 template <std::size_t kNumbers>
 HWY_INLINE void lay_side_by_side(const std::array<Lanes<float>, kNumbers>& form, std::size_t count,
                                  std::array<std::array<float, kNumbers>, kLanes>& forms) {
+    constexpr hn::CappedTag<float, kLanes> kTag;
+    constexpr std::size_t kAtOnce = hn::MaxLanes(kTag);
     for (std::size_t k = 0; k < count; k += 4) {
-        for (std::size_t lane = 0; lane < kLanes; lane += 4) {
-            const auto a = hn::Load(kFour, form[k].data() + lane);
-            const auto b = hn::Load(kFour, form[k + 1].data() + lane);
-            const auto c = hn::Load(kFour, form[k + 2].data() + lane);
-            const auto d = hn::Load(kFour, form[k + 3].data() + lane);
-            const auto ac_low = hn::InterleaveLower(kFour, a, c);
-            const auto ac_high = hn::InterleaveUpper(kFour, a, c);
-            const auto bd_low = hn::InterleaveLower(kFour, b, d);
-            const auto bd_high = hn::InterleaveUpper(kFour, b, d);
-            hn::StoreU(hn::InterleaveLower(kFour, ac_low, bd_low), kFour, &forms[lane][k]);
-            hn::StoreU(hn::InterleaveUpper(kFour, ac_low, bd_low), kFour, &forms[lane + 1][k]);
-            hn::StoreU(hn::InterleaveLower(kFour, ac_high, bd_high), kFour, &forms[lane + 2][k]);
-            hn::StoreU(hn::InterleaveUpper(kFour, ac_high, bd_high), kFour, &forms[lane + 3][k]);
+        for (std::size_t lane = 0; lane < kLanes; lane += kAtOnce) {
+            const auto a = hn::Load(kTag, form[k].data() + lane);
+            const auto b = hn::Load(kTag, form[k + 1].data() + lane);
+            const auto c = hn::Load(kTag, form[k + 2].data() + lane);
+            const auto d = hn::Load(kTag, form[k + 3].data() + lane);
+            const auto ac_low = hn::InterleaveLower(kTag, a, c);
+            const auto ac_high = hn::InterleaveUpper(kTag, a, c);
+            const auto bd_low = hn::InterleaveLower(kTag, b, d);
+            const auto bd_high = hn::InterleaveUpper(kTag, b, d);
+            // A lane, and every fourth one after it.
+            const auto put = [&](std::size_t n, auto numbers) {
+                store_rows(kTag, numbers, &forms[lane + n][k], 4 * kNumbers);
+            };
+            put(0, hn::InterleaveLower(kTag, ac_low, bd_low));
+            put(1, hn::InterleaveUpper(kTag, ac_low, bd_low));
+            put(2, hn::InterleaveLower(kTag, ac_high, bd_high));
+            put(3, hn::InterleaveUpper(kTag, ac_high, bd_high));
         }
     }
 }
