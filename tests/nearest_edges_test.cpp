@@ -1,7 +1,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
 #include <random>
 #include <vector>
 
@@ -150,9 +152,20 @@ TEST(TilingInk, IsTheAreaUnderABandAlongTheNearestLine) {
         const TilingLines lines = lines_about(spot, 4.0F);
         const float half = std::abs(number(random));
         NearestEdges nearest;
-        Lanes<float> inks{};
         find_nearest(lines, x, y, nearest);
-        ink(spot, 4.0F, x, y, {half, 1.0F}, inks);
+        // Any of sixteen blocks, about any spot.
+        const auto block = static_cast<int>(n) % kLanes;
+        std::array<TilingSpot, 3> spots{spot, spot, spot};
+        for (TilingSpot& other : spots) other.sides.inside = {number(random), number(random)};
+        spots[n % 3] = spot;
+        TilingBlocks blocks{.which = LaneBits{1} << block, .spots = {}, .off_x = {}, .off_y = &y};
+        blocks.spots[block] = static_cast<std::int32_t>(n % 3);
+        blocks.off_x.at(static_cast<std::size_t>(block)) = &x;
+        RowBands bands{.half = {}, .opacity = 1.0F};
+        bands.half[block] = half;
+        std::array<Lanes<float>, kLanes> alphas{};
+        ink(blocks, spots.data(), 4.0F, bands, alphas);
+        const Lanes<float>& inks = alphas.at(static_cast<std::size_t>(block));
         for (int i = 0; i < kLanes; ++i) {
             const bool far = nearest.distance[i] > 1e6F;
             const float area =

@@ -408,16 +408,13 @@ bool draw_border_lanes(const Lanes<std::uint32_t>& codes, float reach, float hal
 }
 
 bool ink_border_lanes(const Lanes<std::uint32_t>& codes, float reach, float half, float opacity,
-                      const Lanes<float>& others, Lanes<float>& alpha) {
+                      Lanes<float>& alpha) {
     bool any = false;
     for (int i = 0; i < kLanes; i += kStep) {
         const BorderLanes borders(codes, reach, i);
-        const Number other = load(others, i);
-        const bool beyond = borders.beyond(half);
-        any = any || !beyond;
-        const Number all =
-            beyond ? other : hn::Max(hn::Mul(borders.ink(half), set(opacity)), other);
-        hn::Store(all, kFloats, alpha.data() + i);
+        if (borders.beyond(half)) continue;
+        any = true;
+        store(hn::Max(hn::Mul(borders.ink(half), set(opacity)), load(alpha, i)), alpha, i);
     }
     return any;
 }
@@ -450,8 +447,8 @@ bool draw_borders(const Lanes<std::uint32_t>& codes, float reach, float half,
 }
 
 bool ink_borders(const Lanes<std::uint32_t>& codes, float reach, float half, float opacity,
-                 const Lanes<float>& others, Lanes<float>& alpha) {
-    return HWY_DYNAMIC_DISPATCH(ink_border_lanes)(codes, reach, half, opacity, others, alpha);
+                 Lanes<float>& alpha) {
+    return HWY_DYNAMIC_DISPATCH(ink_border_lanes)(codes, reach, half, opacity, alpha);
 }
 
 void draw_soft(const InkBatch& batch, std::span<const float> profile) {

@@ -60,10 +60,10 @@ void finish_solid(const InkPlanes& planes, std::size_t blocks);
 bool draw_borders(const Lanes<std::uint32_t>& codes, float reach, float half,
                   const Lanes<float>& depths, float behind, Lanes<float>& coverage,
                   Lanes<float>& nearest);
-/// The same where all lines have one ink: `alpha` is that of the bands, or of the other lines where
-/// theirs is greater. False if it is only theirs.
+/// The same where all lines have one ink: `alpha`, that of other lines, becomes at least that of
+/// the bands. False if it stays as it is.
 bool ink_borders(const Lanes<std::uint32_t>& codes, float reach, float half, float opacity,
-                 const Lanes<float>& others, Lanes<float>& alpha);
+                 Lanes<float>& alpha);
 
 /// Inks each pixel by the distance of its centre from the line: `profile` holds strengths at equal
 /// steps of distance from 0 to half the width, between which they are straight, and one 0 more.

@@ -1,6 +1,7 @@
 #include "render/border_map.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include "base/multiversion.h"
@@ -48,9 +49,16 @@ void BorderMap::put(int x, int y, const BorderPacket& borders, const Lanes<float
     if (!depths_.empty()) depths_[k] = t;
 }
 
-bool BorderMap::ink(int x, int y, FaceBand band, const Lanes<float>& others,
-                    Lanes<float>& alpha) const {
-    return ink_borders(codes(x, y), reach_, band.half, band.opacity, others, alpha);
+LaneBits BorderMap::ink(int x, int y, LaneBits seeing, const RowBands& bands,
+                        std::span<Lanes<float>> alphas) const {
+    LaneBits inked = 0;
+    for (LaneBits left = seeing; left != 0; left &= left - 1) {
+        const int k = std::countr_zero(left);
+        const bool any = ink_borders(codes(x + k * kBlockSide, y), reach_, bands.half[k],
+                                     bands.opacity, alphas[static_cast<std::size_t>(k)]);
+        inked |= any ? LaneBits{1} << k : 0U;
+    }
+    return inked;
 }
 
 }  // namespace ink

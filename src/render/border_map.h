@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "accel/tracer.h"
@@ -31,9 +32,11 @@ class BorderMap {
     /// Says that a block will be asked for soon.
     void prefetch(int x, int y) const { __builtin_prefetch(&codes_[block(x, y)]); }
     float reach() const { return reach_; }
-    /// What the lines along the borders that 4 x 4 pixels see leave on them, where all lines have
-    /// one ink: that of others where it is more. False if none is within reach of any of them.
-    bool ink(int x, int y, FaceBand band, const Lanes<float>& others, Lanes<float>& alpha) const;
+    /// What the lines along the borders that sixteen blocks side by side see, from pixel (x, y) on,
+    /// leave on those that see any, where all lines have one ink: that of others, which `alphas`
+    /// hold, where it is more. Returns the blocks that are within reach of a line.
+    LaneBits ink(int x, int y, LaneBits seeing, const RowBands& bands,
+                 std::span<Lanes<float>> alphas) const;
 
   private:
     std::size_t block(int x, int y) const {

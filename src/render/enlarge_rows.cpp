@@ -45,25 +45,41 @@ void mix_rows_lanes(const std::uint32_t* a, const std::uint32_t* b, std::uint32_
 void mix_columns_lanes(const std::uint32_t* row, const std::int32_t* first,
                        const std::uint32_t* shares, std::size_t count,
                        std::uint32_t* HWY_RESTRICT out) {
+    const auto most = hn::Set(kIntegers, kStep - 1);
     std::size_t k = 0;
-    for (; k + kStep <= count; k += kStep) {
+    while (k + kStep <= count) {
         // As many columns lie between no more than as many and two of the row.
-        const std::uint32_t* const from = row + first[k];
+        const std::int32_t begin = first[k];
+        const std::uint32_t* const from = row + begin;
         const auto low = hn::LoadU(kWords, from);
-        const auto high = hn::LoadU(kWords, from + kStep);
-        const auto own = hn::Sub(hn::LoadU(kIntegers, first + k), hn::Set(kIntegers, first[k]));
-        const auto next = hn::Add(own, hn::Set(kIntegers, 1));
-        const auto look_up = [&](auto places_from) HWY_ATTR {
-            const auto most = hn::Set(kIntegers, kStep - 1);
-            const auto indices = hn::IndicesFromVec(kWords, hn::And(places_from, most));
-            return hn::IfThenElse(hn::RebindMask(kWords, hn::Gt(places_from, most)),
-                                  hn::TableLookupLanes(high, indices),
-                                  hn::TableLookupLanes(low, indices));
+        const auto within = [&] {
+            return k + kStep <= count && first[k + kStep - 1] + 1 < begin + kStep;
         };
-        const auto a = look_up(own);
-        const auto b = look_up(next);
+        // Much of a picture is background.
+        if (within() && hn::AllTrue(kWords, hn::Eq(low, hn::Set(kWords, *from)))) {
+            for (; within(); k += kStep) hn::StoreU(low, kWords, out + k);
+            continue;
+        }
+        const auto own = hn::Sub(hn::LoadU(kIntegers, first + k), hn::Set(kIntegers, begin));
+        const auto next = hn::Add(own, hn::Set(kIntegers, 1));
         const auto share = hn::BitCast(kBytes, hn::LoadU(kWords, shares + k));
-        hn::StoreU(mixed(a, b, share), kWords, out + k);
+        const auto from_low = [&](auto places) HWY_ATTR {
+            return hn::TableLookupLanes(low, hn::IndicesFromVec(kWords, places));
+        };
+        if (within()) {
+            hn::StoreU(mixed(from_low(own), from_low(next), share), kWords, out + k);
+            k += kStep;
+            continue;
+        }
+        const auto high = hn::LoadU(kWords, from + kStep);
+        const auto look_up = [&](auto places) HWY_ATTR {
+            const auto indices = hn::And(places, most);
+            return hn::IfThenElse(hn::RebindMask(kWords, hn::Gt(places, most)),
+                                  hn::TableLookupLanes(high, hn::IndicesFromVec(kWords, indices)),
+                                  from_low(indices));
+        };
+        hn::StoreU(mixed(look_up(own), look_up(next), share), kWords, out + k);
+        k += kStep;
     }
     for (; k < count; ++k) {
         const auto one = mixed(hn::Set(kWords, row[first[k]]), hn::Set(kWords, row[first[k] + 1]),

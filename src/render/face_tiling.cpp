@@ -6,6 +6,8 @@
 #include <cmath>
 #include <cstring>
 #include <numbers>
+#include <optional>
+#include <span>
 #include <variant>
 
 #include "render/screen_vertices.h"
@@ -43,10 +45,9 @@ FaceTiling::FaceTiling(const Scene& scene, const Projection& projection,
       large_(enlargement.large()),
       factor_(enlargement.factor()),
       blocks_across_((small_.width + kBlockSide - 1) / kBlockSide),
-      seen_(static_cast<std::size_t>(blocks_across_) *
+      near_(static_cast<std::size_t>(blocks_across_) *
             static_cast<std::size_t>((small_.height + kBlockSide - 1) / kBlockSide)),
-      passed_(seen_.size()),
-      spots_(seen_.size() * kLanes) {
+      spots_(near_.size() * kLanes) {
     for (const Object& object : scene.objects()) {
         meshes_.push_back(std::get_if<Mesh>(&object.shape));
     }
@@ -73,11 +74,23 @@ FaceTiling::FaceTiling(const Scene& scene, const Projection& projection,
             rows_[k].off[i] = (at - static_cast<float>(near) - 0.5F) * factor_;
         }
     }
+    const auto one = [](const Places& places, const auto& index_of) {
+        const auto& near = places.nearest;
+        return near.front() == near.back() ? index_of(near.front()) : kSeveral;
+    };
+    for (const Places& column : columns_) {
+        one_column_.push_back(one(column, [&](int x) { return index_of_column(x); }));
+    }
+    for (const Places& row : rows_) {
+        one_row_.push_back(one(row, [&](int y) { return index_of_row(y); }));
+    }
     aside_.resize(columns_.size() * rows_.size() * kLanes);
 }
 
 bool FaceTiling::put(int x, int y, const HitPacket& hits, const SidesPacket* sides) {
     if (x < 0 || y < 0 || x >= small_.width || y >= small_.height) return false;
+    const auto sees_none = [](std::uint32_t object) { return object == kNoObject; };
+    if (std::ranges::all_of(hits.object, sees_none)) return false;
     const std::size_t k = block(x, y);
     bool any = false;
     for (int i = 0; i < kLanes; ++i) {
@@ -95,8 +108,8 @@ bool FaceTiling::put(int x, int y, const HitPacket& hits, const SidesPacket* sid
         spot.t = hits.t[i];
         spot.object = object << 3U | sides_without_line(*mesh, triangle);
     }
-    seen_[k] = any ? 1 : 0;
-    return true;
+    near_[k] = any ? kSeesMesh : 0;
+    return any;
 }
 
 TriangleSides FaceTiling::project_sides(const Mesh& mesh, std::uint32_t triangle,
@@ -141,19 +154,13 @@ float FaceTiling::length_at(int x, int y, int lane) const {
     return most * (1.0F - std::exp(-length / most));
 }
 
-bool FaceTiling::sees(int x, int y) const {
+/// `sees` for a block whose pixels may lie about several spots.
+bool FaceTiling::several_see(int x, int y) const {
     const auto& columns = columns_[static_cast<std::size_t>(x / kBlockSide)].nearest;
     const auto& rows = rows_[static_cast<std::size_t>(y / kBlockSide)].nearest;
-    const auto seen = [&](int column, int row) {
-        const std::size_t k = block(column, row);
-        return seen_[k] != 0 || passed_[k] != 0;
-    };
-    if (seen(columns.front(), rows.front())) return true;
-    const bool one_column = columns.front() / kBlockSide == columns.back() / kBlockSide;
-    const bool one_row = rows.front() / kBlockSide == rows.back() / kBlockSide;
-    return (!one_column && seen(columns.back(), rows.front())) ||
-           (!one_row && seen(columns.front(), rows.back())) ||
-           (!one_column && !one_row && seen(columns.back(), rows.back()));
+    const auto near = [&](int column, int row) { return near_[block(column, row)] != 0; };
+    return near(columns.front(), rows.front()) || near(columns.back(), rows.front()) ||
+           near(columns.front(), rows.back()) || near(columns.back(), rows.back());
 }
 
 void FaceTiling::look_nowhere(int first_row, int last_row) {
@@ -170,7 +177,10 @@ void FaceTiling::look_at(int x, int y, int column, int row) {
     const int near_column = columns_[bx].nearest[static_cast<std::size_t>(x % kBlockSide)];
     const int near_row = rows_[by].nearest[static_cast<std::size_t>(y % kBlockSide)];
     // Other threads may say so, too.
-    std::atomic_ref(passed_[block(near_column, near_row)]).store(1, std::memory_order_relaxed);
+    const std::atomic_ref near(near_[block(near_column, near_row)]);
+    if ((near.load(std::memory_order_relaxed) & kLooksAside) == 0) {
+        near.fetch_or(kLooksAside, std::memory_order_relaxed);
+    }
     const int right = column - near_column;
     const int below = row - near_row;
     const int code = 1 + (std::clamp(below, -1, 1) + 1) * 3 + std::clamp(right, -1, 1) + 1;
@@ -187,8 +197,9 @@ bool FaceTiling::looks_aside(const std::uint8_t* aside) {
 }
 
 const TilingSpot* FaceTiling::spot_at(int column, int row) const {
-    if (seen_[block(column, row)] == 0) return nullptr;
-    const TilingSpot& spot = spots_[spot_index(column, row)];
+    if ((near_[block(column, row)] & kSeesMesh) == 0) return nullptr;
+    const TilingSpot& spot =
+        spots_[static_cast<std::size_t>(index_of_column(column) + index_of_row(row))];
     return spot.object == TilingSpot::kNone ? nullptr : &spot;
 }
 
@@ -201,11 +212,9 @@ void FaceTiling::for_each_spot(int x, int y, const Visit& visit) const {
     const Places& columns = columns_[bx];
     const Places& rows = rows_[by];
     const std::uint8_t* const aside = aside_of(x, y);
-    // All lie about one point.
-    if (columns.nearest.front() == columns.nearest.back() &&
-        rows.nearest.front() == rows.nearest.back() && !looks_aside(aside)) {
-        const TilingSpot* const spot = spot_at(columns.nearest.front(), rows.nearest.front());
-        if (spot != nullptr) visit(*spot, columns.off, rows.off, kAllPixels);
+    if (const std::optional<std::int32_t> one = one_spot(x, y)) {
+        const TilingSpot& spot = spots_[static_cast<std::size_t>(*one)];
+        if (spot.object != TilingSpot::kNone) visit(spot, columns.off, rows.off, kAllPixels);
         return;
     }
     Lanes<std::int32_t> column;
@@ -259,24 +268,64 @@ bool FaceTiling::measure(int x, int y, float reach, NearestEdges& nearest) const
     return std::ranges::any_of(nearest.distance, [&](float d) { return d < reach; });
 }
 
-bool FaceTiling::ink(int x, int y, FaceBand band, const Lanes<float>& others,
-                     Lanes<float>& alpha) const {
+/// `ink` for one block whose pixels may lie about several spots.
+bool FaceTiling::ink_about_several(int x, int y, const RowBands& band, Lanes<float>& alpha) const {
     bool any = false;
-    alpha = others;
+    const Lanes<float> others = alpha;
     for_each_spot(x, y,
                   [&](const TilingSpot& spot, const Lanes<float>& off_x, const Lanes<float>& off_y,
                       std::uint32_t own) {
                       any = true;
-                      if (own == kAllPixels)
-                          return ink::ink(spot, factor_, off_x, off_y, band, alpha);
                       Lanes<float> found = others;
-                      ink::ink(spot, factor_, off_x, off_y, band, found);
+                      TilingBlocks block{
+                          .which = 1, .spots = {}, .off_x = {&off_x}, .off_y = &off_y};
+                      ink::ink(block, &spot, factor_, band, std::span(&found, 1));
                       for (; own != 0; own &= own - 1) {
                           const int i = std::countr_zero(own);
                           alpha[i] = found[i];
                       }
                   });
     return any;
+}
+
+LaneBits FaceTiling::ink(int x, int y, LaneBits seeing, const RowBands& bands,
+                         std::span<Lanes<float>> alphas) const {
+    const auto by = static_cast<std::size_t>(y / kBlockSide);
+    TilingBlocks blocks{.which = 0, .spots = {}, .off_x = {}, .off_y = &rows_[by].off};
+    LaneBits inked = 0;
+    for (; seeing != 0; seeing &= seeing - 1) {
+        const int k = std::countr_zero(seeing);
+        const LaneBits bit = LaneBits{1} << k;
+        const int block_x = x + k * kBlockSide;
+        const auto place = static_cast<std::size_t>(k);
+        const std::optional<std::int32_t> spot = one_spot(block_x, y);
+        if (!spot) {
+            const RowBands band{.half = {bands.half[k]}, .opacity = bands.opacity};
+            inked |= ink_about_several(block_x, y, band, alphas[place]) ? bit : 0U;
+            continue;
+        }
+        if (spots_[static_cast<std::size_t>(*spot)].object == TilingSpot::kNone) continue;
+        // Those left out need one that is there, too.
+        if (blocks.which == 0) blocks.spots.fill(*spot);
+        blocks.which |= bit;
+        blocks.spots[k] = *spot;
+        blocks.off_x[place] = &columns_[static_cast<std::size_t>(block_x / kBlockSide)].off;
+    }
+    if (blocks.which != 0) ink::ink(blocks, spots_.data(), factor_, bands, alphas);
+    return inked | blocks.which;
+}
+
+/// The one that all pixels of a block lie about, in a block of the small picture that sees a mesh;
+/// nothing if there is none.
+std::optional<std::int32_t> FaceTiling::one_spot(int x, int y) const {
+    const std::int32_t column = one_column_[static_cast<std::size_t>(x / kBlockSide)];
+    const std::int32_t row = one_row_[static_cast<std::size_t>(y / kBlockSide)];
+    if (column == kSeveral || row == kSeveral) return {};
+    const std::int32_t spot = column + row;
+    const std::uint8_t near = near_[static_cast<std::size_t>(spot / kLanes)];
+    if ((near & kSeesMesh) == 0) return {};
+    if ((near & kLooksAside) != 0 && looks_aside(aside_of(x, y))) return {};
+    return spot;
 }
 
 }  // namespace ink

@@ -2,6 +2,8 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
+#include <span>
 #include <vector>
 
 #include "accel/projection.h"
@@ -28,7 +30,7 @@ class FaceTiling {
 
     /// What 4 x 4 points of the small picture see; blocks beyond it are dropped. Threads may put
     /// different blocks at the same time. `sides` as far as they are known, else null.
-    /// False if it lies beyond the picture: it is not kept.
+    /// False if it is not kept, as it lies beyond the picture or sees no mesh.
     bool put(int x, int y, const HitPacket& hits, const SidesPacket* sides);
 
     /// To be called for all rows of the large picture, before any of them looks aside. Bands of
@@ -43,15 +45,27 @@ class FaceTiling {
     float length_at(int x, int y, int lane) const;
 
     /// Whether the 4 x 4 pixels at (x, y) of the large picture see any face.
-    bool sees(int x, int y) const;
+    bool sees(int x, int y) const {
+        const std::int32_t column = one_column_[static_cast<std::size_t>(x / kBlockSide)];
+        const std::int32_t row = one_row_[static_cast<std::size_t>(y / kBlockSide)];
+        if (column == kSeveral || row == kSeveral) return several_see(x, y);
+        return near_[static_cast<std::size_t>(column + row) / kLanes] != 0;
+    }
     /// Their nearest lines; instead of triangles it names objects. False if none is within reach.
     bool measure(int x, int y, float reach, NearestEdges& nearest) const;
-    /// The same where all lines have one ink, see BorderMap::ink.
-    bool ink(int x, int y, FaceBand band, const Lanes<float>& others, Lanes<float>& alpha) const;
+    /// What the lines between faces leave on those of sixteen blocks side by side, from pixel
+    /// (x, y) on, that see any, where all lines have one ink: that of others, which `alphas` hold,
+    /// where it is more. Returns those that have such lines.
+    LaneBits ink(int x, int y, LaneBits seeing, const RowBands& bands,
+                 std::span<Lanes<float>> alphas) const;
     /// Nothing: to find out where a block's spots are takes as long as to wait for them.
     void prefetch(int /*x*/, int /*y*/) const {}
 
   private:
+    static constexpr std::uint8_t kSeesMesh = 1;
+    static constexpr std::uint8_t kLooksAside = 2;  ///< pixels about it do
+    static constexpr std::int32_t kSeveral = -1;
+
     /// Of four columns or rows of the large picture, the nearest point of the small one of each,
     /// and from it to the pixel's centre, pixels.
     struct Places {
@@ -63,10 +77,16 @@ class FaceTiling {
         return static_cast<std::size_t>(y / kBlockSide) * static_cast<std::size_t>(blocks_across_) +
                static_cast<std::size_t>(x / kBlockSide);
     }
-    std::size_t spot_index(int column, int row) const {
-        return block(column, row) * kLanes +
-               static_cast<std::size_t>(row % kBlockSide * kBlockSide + column % kBlockSide);
+    /// Of a point's index, what its column gives, and its row.
+    std::int32_t index_of_column(int column) const {
+        return column / kBlockSide * kLanes + column % kBlockSide;
     }
+    std::int32_t index_of_row(int row) const {
+        return row / kBlockSide * blocks_across_ * kLanes + row % kBlockSide * kBlockSide;
+    }
+    bool several_see(int x, int y) const;
+    bool ink_about_several(int x, int y, const RowBands& band, Lanes<float>& alpha) const;
+    std::optional<std::int32_t> one_spot(int x, int y) const;
     TriangleSides project_sides(const Mesh& mesh, std::uint32_t triangle, Vec2f point) const;
     const std::uint8_t* aside_of(int x, int y) const {
         return aside_.data() + (static_cast<std::size_t>(y / kBlockSide) * columns_.size() +
@@ -84,8 +104,9 @@ class FaceTiling {
     float factor_;
     int blocks_across_;
     std::vector<Places> columns_, rows_;  ///< by blocks of the large picture
-    std::vector<std::uint8_t> seen_;      ///< a block of the small picture: it sees a mesh
-    std::vector<std::uint8_t> passed_;    ///< likewise: pixels about it look aside
+    /// What the columns and rows of their one nearest point add to its index, or kSeveral.
+    std::vector<std::int32_t> one_column_, one_row_;
+    std::vector<std::uint8_t> near_;  ///< by blocks of the small picture: the bits above
     std::vector<TilingSpot, UninitializedAllocator<TilingSpot>> spots_;
     /// By blocks of the large picture, a pixel: 0, or where the point that it sees the surface of
     /// lies from the nearest one, see look_at.

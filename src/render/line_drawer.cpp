@@ -1,6 +1,8 @@
 #include "render/line_drawer.h"
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
 #include <cstddef>
 #include <cstring>
@@ -300,29 +302,39 @@ void LineDrawer::write(const Tile& tile) {
 }
 
 /// Where all lines have one ink, that of lines between faces needs no layer to be gathered in: it
-/// goes from what is kept of a block's faces straight to its pixels.
+/// goes from what is kept of a row of blocks' faces straight to their pixels.
 template <class Faces>
 void LineDrawer::write_with_faces(const Tile& tile, const Faces& faces) {
     const Timer phase(stats_.blend_ms);
     gather_blocks(tile, faces);
     const LineStyle& style = edges_.ink.styles[edges_.style_of(LineType::mesh, 0)];
-    const Lanes<float> no_ink{};
+    RowBands bands{.half = {}, .opacity = style.opacity};
+    std::array<Lanes<float>, kLanes> alphas;
     const float* scale_of_block = scales_.data();
     std::size_t k = 0;
     for (int y = tile.y0; y < tile.y1; y += kBlockSide) {
         prefetch_row(tile, y + kBlockSide, faces);
-        for (int x = tile.x0; x < tile.x1; x += kBlockSide, ++k) {
-            const bool stroked = ink_.touched(k);
-            const Lanes<float>& strokes = stroked ? ink_.alpha_of_block(k) : no_ink;
-            Lanes<float> alpha;
-            if (sees_[k]) {
-                const FaceBand band{0.5F * (style.width_px * *scale_of_block++), style.opacity};
-                if (faces.ink(x, y, band, strokes, alpha)) {
-                    lay(x, y, {alpha, style.color, {}});
-                    continue;
+        for (int x0 = tile.x0; x0 < tile.x1; x0 += kLanes * kBlockSide) {
+            LaneBits seeing = 0;
+            LaneBits inked = 0;
+            for (int i = 0; i < kLanes && x0 + i * kBlockSide < tile.x1; ++i, ++k) {
+                const LaneBits bit = LaneBits{1} << i;
+                Lanes<float>& alpha = alphas[static_cast<std::size_t>(i)];
+                const bool stroked = ink_.touched(k);
+                if (stroked) {
+                    alpha = ink_.alpha_of_block(k);
+                    inked |= bit;
                 }
+                if (!sees_[k]) continue;
+                if (!stroked) alpha.fill(0.0F);
+                bands.half[i] = 0.5F * (style.width_px * *scale_of_block++);
+                seeing |= bit;
             }
-            if (stroked) lay(x, y, {strokes, style.color, {}});
+            if (seeing != 0) inked |= faces.ink(x0, y, seeing, bands, alphas);
+            for (; inked != 0; inked &= inked - 1) {
+                const auto i = static_cast<std::size_t>(std::countr_zero(inked));
+                lay(x0 + static_cast<int>(i) * kBlockSide, y, {alphas[i], style.color, {}});
+            }
         }
     }
 }

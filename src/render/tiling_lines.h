@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 
 #include "accel/tracer.h"
 #include "base/lanes.h"
@@ -35,9 +36,26 @@ TilingLines lines_about(const TilingSpot& spot, float factor);
 void find_nearest(const TilingLines& lines, const Lanes<float>& x, const Lanes<float>& y,
                   NearestEdges& nearest);
 
-/// What the lines about a spot ink of the pixels about sixteen points, by the area under a band
-/// along the nearest one; where that is less, `alpha` stays as it is.
-void ink(const TilingSpot& spot, float factor, const Lanes<float>& x, const Lanes<float>& y,
-         FaceBand band, Lanes<float>& alpha);
+/// The lines of one family about each of sixteen spots, as in TilingLines, and what their coverage
+/// of pixels depends on (see SquareCoverage), ready to be inked.
+struct TilingFamily {
+    Lanes<float> at, dx, dy, apart;
+    Lanes<float> reach, flat, slope, corner;
+};
+
+/// Blocks of pixels side by side, each about one spot.
+struct TilingBlocks {
+    LaneBits which = 0;         ///< of sixteen
+    Lanes<std::int32_t> spots;  ///< their indices; of those that are not, of any spot
+    /// From the spot to the pixels of a block.
+    std::array<const Lanes<float>*, kLanes> off_x;
+    const Lanes<float>* off_y;  ///< likewise
+};
+
+/// What the lines about their spots, in a picture `factor` times smaller, ink of the pixels of some
+/// blocks, by the area under a band along the nearest one; where that is less, `alphas` stay as
+/// they are.
+void ink(const TilingBlocks& blocks, const TilingSpot* spots, float factor, const RowBands& bands,
+         std::span<Lanes<float>> alphas);
 
 }  // namespace ink
