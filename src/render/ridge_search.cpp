@@ -45,6 +45,7 @@ class FirstNodes {
     FirstNodes(int first_point, int first_node, int step, std::pair<int, int> range)
         : first_point_(first_point), end_(range.second) {
         const int last_point = (first_node + range.second) * step;
+        nodes_.reserve(static_cast<std::size_t>(std::max(last_point - first_point, 0)));
         for (int point = first_point; point < last_point; ++point) {
             nodes_.push_back(std::max(range.first, ceiling_of(point, step) - first_node));
         }
@@ -58,6 +59,10 @@ class FirstNodes {
     int first_point_, end_;
     std::vector<int> nodes_;
 };
+
+bool is_whole(const Block& block) {
+    return block.across == kBlockSide && block.columns == kBlockSide && block.rows == kBlockSide;
+}
 
 }  // namespace
 
@@ -106,6 +111,7 @@ RidgeSearch::RidgeSearch(const Pipeline& pipeline, const Viewpoint& viewpoint, i
         balls_.push_back(std::holds_alternative<Spheres>(objects[k].shape) &&
                          pipeline.ids.is_ball(k));
     }
+    has_balls_ = std::ranges::count(balls_, 0) < std::ssize(balls_);
 }
 
 RidgeSearch::~RidgeSearch() = default;
@@ -145,6 +151,11 @@ void RidgeSearch::keep(const Tile& tile, const LatticeView& lattice) {
     const FirstNodes rows(tile.y0 * per_pixel_, y0_, step_, {nodes.y0, nodes.y1});
     for (std::size_t k = 0; k < lattice.blocks.size(); ++k) {
         const Block& block = lattice.blocks[k];
+        if (step_ == 1 && is_whole(block) && block.x - x0_ + kBlockSide <= nodes.x1 &&
+            block.y - y0_ + kBlockSide <= nodes.y1) {
+            put_block(lattice.hits[k], lattice.normals[k], block);
+            continue;
+        }
         for (int j = rows.from(block.y); j < rows.from(block.y + block.rows); ++j) {
             const int above = ((y0_ + j) * step_ - block.y) * block.across;
             for (int i = columns.from(block.x); i < columns.from(block.x + block.columns); ++i) {
@@ -153,6 +164,28 @@ void RidgeSearch::keep(const Tile& tile, const LatticeView& lattice) {
             }
         }
     }
+}
+
+/// Where each lattice point is a node.
+void RidgeSearch::put_block(const HitPacket& hits, const NormalPacket& normals,
+                            const Block& block) {
+    Lanes<GeometryId> ids;
+    pipeline_.ids.resolve(hits, ids);
+    for (int i = 0; i < kLanes && has_balls_; ++i) {
+        if (hits.object[i] != kNoObject && balls_[hits.object[i]] != 0) ids[i] = kBackground;
+    }
+    const std::size_t first = grid_.index(block.x - x0_, block.y - y0_);
+    const auto copy = [&](const auto& from, auto& to) {
+        for (int j = 0; j < kBlockSide; ++j) {
+            std::copy_n(from.data() + j * kBlockSide, kBlockSide,
+                        to.data() + first + static_cast<std::size_t>(j * grid_.width));
+        }
+    };
+    copy(ids, grid_.id);
+    copy(normals.x, grid_.nx);
+    copy(normals.y, grid_.ny);
+    copy(normals.z, grid_.nz);
+    copy(hits.t, grid_.t);
 }
 
 /// Balls have none: their view-dependent curvature grows all the way to their outlines.
@@ -170,6 +203,10 @@ INKTRACE_INLINE void RidgeSearch::put(const HitPacket& hits, const NormalPacket&
 void RidgeSearch::trace(const Nodes& strip, Sampler& sampler) {
     std::vector<Vec2f> points;
     std::vector<std::size_t> nodes;
+    const auto count = static_cast<std::size_t>(strip.x1 - strip.x0) *
+                       static_cast<std::size_t>(strip.y1 - strip.y0);
+    points.reserve(count);
+    nodes.reserve(count);
     for (int j = strip.y0; j < strip.y1; ++j) {
         for (int i = strip.x0; i < strip.x1; ++i) {
             points.push_back(grid_.point(i, j));

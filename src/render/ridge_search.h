@@ -42,8 +42,8 @@ class RidgeSearch {
     /// Threads may keep different tiles at the same time.
     void keep(const Tile& tile, const LatticeView& lattice);
 
-    /// Items of work, after all tiles: the rim in so many strips, then the grid in bands. Threads
-    /// may do different ones at the same time.
+    /// Items of work: the rim in so many strips, beside the tiles or after them, then the grid in
+    /// bands. Threads may do different ones at the same time.
     std::size_t strips() const { return strips_.size(); }
     void trace_strip(std::size_t strip, std::size_t thread);
     std::size_t bands() const { return found_.size(); }
@@ -80,6 +80,7 @@ class RidgeSearch {
     void cut_rim();
     Worker& worker_of(std::size_t thread);
     void trace(const Nodes& strip, Sampler& sampler);
+    void put_block(const HitPacket& hits, const NormalPacket& normals, const Block& block);
     void put(const HitPacket& hits, const NormalPacket& normals, int lane, std::size_t node);
 
     const Pipeline& pipeline_;
@@ -95,6 +96,7 @@ class RidgeSearch {
     Nodes kept_;                                    ///< by tiles
     std::vector<Nodes> strips_;                     ///< the others
     std::vector<std::uint8_t> balls_;               ///< objects without ridges: each ID is a ball
+    bool has_balls_ = false;                        ///< any of them
     std::vector<std::vector<RidgePiece>> found_;    ///< band by band
     std::vector<std::unique_ptr<Worker>> workers_;  ///< a thread
 };
