@@ -132,9 +132,16 @@ LineFinder& LineSearch::finder(std::size_t worker) {
     return *own;
 }
 
+/// And what ridges need from around the tiles: small pieces of work, which come last.
 void LineSearch::search_tiles() {
-    loop_.run(seeing_.size(),
-              [&](std::size_t k, std::size_t worker) { search(seeing_[k], worker); });
+    const std::size_t strips = ridges_ ? ridges_->strips() : 0;
+    loop_.run(seeing_.size() + strips, [&](std::size_t k, std::size_t worker) {
+        if (k < seeing_.size()) {
+            search(seeing_[k], worker);
+        } else {
+            ridges_->trace_strip(k - seeing_.size(), worker);
+        }
+    });
 }
 
 void LineSearch::search(std::size_t tile, std::size_t worker) {
@@ -169,10 +176,6 @@ void LineSearch::finish_fringe(std::size_t tile) const {
 /// lines of several tiles add, and fill the empty tiles. What asks for rays and what fills tiles
 /// share the finders, of which each thread has its own.
 void LineSearch::mend(const SideWork& beside) {
-    if (ridges_) {
-        loop_.run(ridges_->strips(),
-                  [&](std::size_t k, std::size_t worker) { ridges_->trace_strip(k, worker); });
-    }
     const std::size_t bands = ridges_ ? ridges_->bands() : 0;
     const std::size_t fringes = fringes_.empty() ? 0 : seeing_.size();
     const auto do_beside = [&](std::size_t i, std::size_t worker) {
@@ -221,7 +224,15 @@ LineDensity LineSearch::take_ridges() {
     return density;
 }
 
-void LineSearch::finish() { found_.thinning = thinning_of(edges_, finders_, take_ridges()); }
+/// What threads have worked with is given back at once, and not when the picture is done and the
+/// others have left.
+void LineSearch::finish() {
+    found_.thinning = thinning_of(edges_, finders_, take_ridges());
+    serial_ = stats();
+    finders_.clear();
+    behind_.clear();
+    ridges_.reset();
+}
 
 RenderStats LineSearch::stats() const {
     RenderStats total = serial_;

@@ -53,7 +53,7 @@ class LineSearch {
     /// Mends lines and finds ridges.
     void mend(const SideWork& beside = {});
     /// On one thread: takes those ridges that no other line is near, and tells where lines are
-    /// dense. In a draft, others may read the tiles' segments meanwhile.
+    /// dense. In a draft, others may read the tiles' segments meanwhile. The last stage.
     void finish();
 
     FoundLines& found() { return found_; }
@@ -77,7 +77,7 @@ class LineSearch {
     std::optional<RidgeSearch> ridges_;
     std::vector<std::unique_ptr<LineFinder>> finders_;       ///< a thread
     std::vector<std::unique_ptr<HiddenLineFinder>> behind_;  ///< likewise
-    RenderStats serial_;                                     ///< of what one thread does for all
+    RenderStats serial_;  ///< of what one thread does for all; once it is over, of all
 };
 
 /// Joins the hidden lines of the whole picture, so that dashes do not start anew in every tile, and
