@@ -132,16 +132,9 @@ LineFinder& LineSearch::finder(std::size_t worker) {
     return *own;
 }
 
-/// And what ridges need from around the tiles: small pieces of work, which come last.
 void LineSearch::search_tiles() {
-    const std::size_t strips = ridges_ ? ridges_->strips() : 0;
-    loop_.run(seeing_.size() + strips, [&](std::size_t k, std::size_t worker) {
-        if (k < seeing_.size()) {
-            search(seeing_[k], worker);
-        } else {
-            ridges_->trace_strip(k - seeing_.size(), worker);
-        }
-    });
+    loop_.run(seeing_.size(),
+              [&](std::size_t k, std::size_t worker) { search(seeing_[k], worker); });
 }
 
 void LineSearch::search(std::size_t tile, std::size_t worker) {
@@ -176,6 +169,10 @@ void LineSearch::finish_fringe(std::size_t tile) const {
 /// lines of several tiles add, and fill the empty tiles. What asks for rays and what fills tiles
 /// share the finders, of which each thread has its own.
 void LineSearch::mend(const SideWork& beside) {
+    if (ridges_) {
+        loop_.run(ridges_->strips(),
+                  [&](std::size_t k, std::size_t worker) { ridges_->trace_strip(k, worker); });
+    }
     const std::size_t bands = ridges_ ? ridges_->bands() : 0;
     const std::size_t fringes = fringes_.empty() ? 0 : seeing_.size();
     const auto do_beside = [&](std::size_t i, std::size_t worker) {
