@@ -46,8 +46,8 @@ struct SphereForm {
 
 /// A triangle as a camera sees it. With e_k = dx_k (q.y - y_k) - dy_k (q.x - x_k), its three edges
 /// are e_k >= 0 on the inside. Every edge starts at that of its ends which comes first on the
-/// screen, so that the triangles on its two sides compute the same number, up to its sign. Its depth
-/// is z + e_3 / (w + wx q.x + wy q.y), within [near, far].
+/// screen, so that the triangles on its two sides compute the same number, up to its sign. Its
+/// depth is z + e_3 / (w + wx q.x + wy q.y), within [near, far].
 struct TriangleForm {
     std::array<float, 4> x, y, dx, dy;
     float z, w, wx, wy, near, far;
