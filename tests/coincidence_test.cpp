@@ -10,6 +10,7 @@
 
 #include "scenes.h"
 #include "seen.h"
+#include "set_ray.h"
 
 namespace ink::test {
 namespace {
@@ -108,12 +109,7 @@ TEST(Coincidence, PrefersTheFirstHoweverFlatTheRay) {
             const Vec3f target = kLower + Vec3f{0.01F + 0.08F * uniform(random),
                                                 0.01F + 0.08F * uniform(random), 0.0F};
             const Vec3f from = target - dir * (0.01F + 0.1F * uniform(random));
-            packet.origin_x[i] = from.x;
-            packet.origin_y[i] = from.y;
-            packet.origin_z[i] = from.z;
-            packet.dir_x[i] = dir.x;
-            packet.dir_y[i] = dir.y;
-            packet.dir_z[i] = dir.z;
+            set_ray(packet, i, from, dir);
         }
     }
     for (const PacketWidth width : {PacketWidth::four, PacketWidth::eight, PacketWidth::sixteen}) {

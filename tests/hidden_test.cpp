@@ -14,6 +14,7 @@
 #include "lines/dashes.h"
 #include "render/render.h"
 #include "scenes.h"
+#include "set_ray.h"
 #include "test_files.h"
 #include "vector/line_art.h"
 #include "vector/svg_writer.h"
@@ -242,12 +243,7 @@ TEST(PeeledTracer, CountsSurfacesOfAnySceneAsTheOracleDoes) {
         for (int i = 0; i < kLanes; ++i) {
             const Vec3f target = uniform_point(random) - Vec3f{0.5F, 0.5F, 0.5F};
             const Vec3f dir = normalize(target - Vec3f{0, 0, 3});
-            rays.origin_x[i] = 0.0F;
-            rays.origin_y[i] = 0.0F;
-            rays.origin_z[i] = 3.0F;
-            rays.dir_x[i] = dir.x;
-            rays.dir_y[i] = dir.y;
-            rays.dir_z[i] = dir.z;
+            set_ray(rays, i, {0, 0, 3}, dir);
         }
         embree->cross(rays, hits);
         oracle->cross(rays, expected);

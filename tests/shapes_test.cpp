@@ -11,6 +11,7 @@
 #include "accel/shape_intersection.h"
 #include "accel/tracer.h"
 #include "scenes.h"
+#include "set_ray.h"
 
 namespace ink::test {
 namespace {
@@ -115,12 +116,7 @@ TEST_P(EveryShape, IsHitWhereBruteForceHitsIt) {
             const Vec3f origin = to_float(normalize(ray.origin) * 3.0);
             const Vec3f aim = (uniform_point(random) - Vec3f{0.5F, 0.5F, 0.5F}) * 1.2F;
             const Vec3f dir = normalize(aim - origin);
-            packet.origin_x[i] = origin.x;
-            packet.origin_y[i] = origin.y;
-            packet.origin_z[i] = origin.z;
-            packet.dir_x[i] = dir.x;
-            packet.dir_y[i] = dir.y;
-            packet.dir_z[i] = dir.z;
+            set_ray(packet, i, origin, dir);
         }
     }
     std::vector<HitPacket> expected(rays.size());
@@ -296,12 +292,7 @@ TEST(Shapes, ATorusIsTheLimitOfItsTessellation) {
             const ShapeRay ray = random_ray(random);
             exact.push_back(ray);
             const Vec3f origin = mesh.frame().from_world(ray.origin);
-            packet.origin_x[i] = origin.x;
-            packet.origin_y[i] = origin.y;
-            packet.origin_z[i] = origin.z;
-            packet.dir_x[i] = static_cast<float>(ray.dir.x);
-            packet.dir_y[i] = static_cast<float>(ray.dir.y);
-            packet.dir_z[i] = static_cast<float>(ray.dir.z);
+            set_ray(packet, i, origin, to_float(ray.dir));
         }
     }
     std::vector<HitPacket> hits(rays.size());

@@ -19,6 +19,7 @@
 #include "accel/tracer.h"
 #include "curvatures.h"
 #include "scenes.h"
+#include "set_ray.h"
 
 namespace ink::test {
 namespace {
@@ -243,12 +244,7 @@ std::vector<std::optional<double>> trace(const Scene& scene, const std::vector<S
         const auto lane = static_cast<int>(k % kLanes);
         const Vec3f origin = scene.frame().from_world(rays[k].origin);
         packet.active[lane] = -1;
-        packet.origin_x[lane] = origin.x;
-        packet.origin_y[lane] = origin.y;
-        packet.origin_z[lane] = origin.z;
-        packet.dir_x[lane] = static_cast<float>(rays[k].dir.x);
-        packet.dir_y[lane] = static_cast<float>(rays[k].dir.y);
-        packet.dir_z[lane] = static_cast<float>(rays[k].dir.z);
+        set_ray(packet, lane, origin, to_float(rays[k].dir));
     }
     std::vector<HitPacket> hits(packets.size());
     make_embree_tracer(scene)->intersect(packets, hits, Coherence::incoherent);
@@ -449,12 +445,7 @@ TEST(Hexahedra, AreHitWhereBruteForceHitsTheirTriangles) {
                     normalize(uniform_point(random) - Vec3f{0.5F, 0.5F, 0.5F}) * 3.0F;
                 const Vec3f aim = (uniform_point(random) - Vec3f{0.5F, 0.5F, 0.5F}) * 1.2F;
                 const Vec3f dir = normalize(aim - origin);
-                packet.origin_x[i] = origin.x;
-                packet.origin_y[i] = origin.y;
-                packet.origin_z[i] = origin.z;
-                packet.dir_x[i] = dir.x;
-                packet.dir_y[i] = dir.y;
-                packet.dir_z[i] = dir.z;
+                set_ray(packet, i, origin, dir);
             }
         }
         ASSERT_EQ(exact.frame().unit, mesh.frame().unit);

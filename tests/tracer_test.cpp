@@ -7,18 +7,10 @@
 #include <string>
 
 #include "scenes.h"
+#include "set_ray.h"
 
 namespace ink::test {
 namespace {
-
-void set_ray(RayPacket& rays, int lane, Vec3f origin, Vec3f dir) {
-    rays.origin_x[lane] = origin.x;
-    rays.origin_y[lane] = origin.y;
-    rays.origin_z[lane] = origin.z;
-    rays.dir_x[lane] = dir.x;
-    rays.dir_y[lane] = dir.y;
-    rays.dir_z[lane] = dir.z;
-}
 
 /// Rays from within and around the scene to points in its middle.
 std::vector<RayPacket> random_rays(unsigned seed, std::size_t packets) {

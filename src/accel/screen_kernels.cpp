@@ -255,39 +255,27 @@ struct PointRanges {
 /// The edges of triangles, lane by lane.
 class EdgeLanes {
   public:
-    HWY_INLINE EdgeLanes(const std::array<FormNumbers, kLanes>& forms, int i) {
-        const auto first = static_cast<std::size_t>(i);
-        x_ = transposed(forms, first, 0);
-        y_ = transposed(forms, first, 4);
-        dx_ = transposed(forms, first, 8);
-        dy_ = transposed(forms, first, 12);
-    }
+    /// From the i-th triangle on.
+    HWY_INLINE EdgeLanes(const std::array<FormNumbers, kLanes>& forms, std::size_t i)
+        : x_(numbers(forms, i, 0)),
+          y_(numbers(forms, i, 4)),
+          dx_(numbers(forms, i, 8)),
+          dy_(numbers(forms, i, 12)) {}
 
     /// False only where points lie beyond an edge.
     HWY_INLINE Mask may_cover(Number qx, Number qy) const {
-        return hn::And(hn::And(may_cover(x_.a, y_.a, dx_.a, dy_.a, qx, qy),
-                               may_cover(x_.b, y_.b, dx_.b, dy_.b, qx, qy)),
-                       may_cover(x_.c, y_.c, dx_.c, dy_.c, qx, qy));
+        return hn::And(hn::And(may_cover(x_.first, y_.first, dx_.first, dy_.first, qx, qy),
+                               may_cover(x_.second, y_.second, dx_.second, dy_.second, qx, qy)),
+                       may_cover(x_.third, y_.third, dx_.third, dy_.third, qx, qy));
     }
 
   private:
-    struct OfThree {
-        Number a, b, c;
-    };
-
-    /// The first three of four numbers of each form.
-    static HWY_INLINE OfThree transposed(const std::array<FormNumbers, kLanes>& forms,
-                                         std::size_t first, std::size_t number) {
-        const auto rows = [&](std::size_t k) {
-            return load_rows(kFloats, &forms[first + k][number], 4 * forms[0].size());
-        };
-        const auto even_low = hn::InterleaveLower(kFloats, rows(0), rows(2));
-        const auto odd_low = hn::InterleaveLower(kFloats, rows(1), rows(3));
-        const auto even_high = hn::InterleaveUpper(kFloats, rows(0), rows(2));
-        const auto odd_high = hn::InterleaveUpper(kFloats, rows(1), rows(3));
-        return {hn::InterleaveLower(kFloats, even_low, odd_low),
-                hn::InterleaveUpper(kFloats, even_low, odd_low),
-                hn::InterleaveLower(kFloats, even_high, odd_high)};
+    /// Four numbers of each form, of which three are of edges.
+    static HWY_INLINE TurnedRound<Floats> numbers(const std::array<FormNumbers, kLanes>& forms,
+                                                  std::size_t first, std::size_t number) {
+        return {kFloats, [&](std::size_t k) HWY_ATTR {
+                    return load_rows(kFloats, &forms[first + k][number], 4 * forms[0].size());
+                }};
     }
 
     static HWY_INLINE Mask may_cover(Number x, Number y, Number dx, Number dy, Number qx,
@@ -297,7 +285,7 @@ class EdgeLanes {
         return hn::Ge(value, slack);
     }
 
-    OfThree x_, y_, dx_, dy_;
+    TurnedRound<Floats> x_, y_, dx_, dy_;
 };
 
 /// Calls `visit(column, row)` for the first cells of windows that cover the range, until it returns
@@ -389,7 +377,7 @@ struct Pairs {
     HWY_INLINE void add_points(Mask few, const ScreenPacket& packet, const PointRanges& ranges,
                                const FrontRaster& raster, int i) {
         if (hn::AllFalse(kFloats, few)) return;
-        const EdgeLanes edges(packet.forms, i);
+        const EdgeLanes edges(packet.forms, static_cast<std::size_t>(i));
         const float spacing = raster.side / kBlockSide;
         const float inset = 0.5F * (spacing - (raster.side - raster.extent));
         const auto place = [&](float from, Integer of) {

@@ -37,21 +37,9 @@ HWY_INLINE hn::Vec<Tag> load_fours(Tag tag, const float* const* from, std::size_
 }
 
 /// Four numbers that follow each other in each lane's place.
-struct FourLanes {
-    Number a, b, c, d;
-
-    HWY_INLINE FourLanes(const float* const* from, std::size_t number) {
-        const auto rows = [&](int k) { return load_fours(kFloats, from + k, number); };
-        const auto even_low = hn::InterleaveLower(kFloats, rows(0), rows(2));
-        const auto odd_low = hn::InterleaveLower(kFloats, rows(1), rows(3));
-        const auto even_high = hn::InterleaveUpper(kFloats, rows(0), rows(2));
-        const auto odd_high = hn::InterleaveUpper(kFloats, rows(1), rows(3));
-        a = hn::InterleaveLower(kFloats, even_low, odd_low);
-        b = hn::InterleaveUpper(kFloats, even_low, odd_low);
-        c = hn::InterleaveLower(kFloats, even_high, odd_high);
-        d = hn::InterleaveUpper(kFloats, even_high, odd_high);
-    }
-};
+HWY_INLINE TurnedRound<Floats> four_numbers(const float* const* from, std::size_t number) {
+    return {kFloats, [&](std::size_t k) HWY_ATTR { return load_fours(kFloats, from + k, number); }};
+}
 
 /// What some lanes of a packet saw, in registers as long as winners are added.
 struct Seen {
@@ -91,22 +79,22 @@ struct Seen {
     /// What each lane saw, by the numbers of its winner, or `kNothing`.
     HWY_INLINE Seen(const float* const* shades, Number qx, Number qy) {
         using S = ShadeNumbers;
-        const FourLanes first(shades, 0);
-        const FourLanes second(shades, 4);
-        const FourLanes third(shades, 8);
-        const FourLanes fourth(shades, 12);
+        const auto [nx, ny, nz, right_x] = four_numbers(shades, 0);
+        const auto [right_y, right_z, down_x, down_y] = four_numbers(shades, 4);
+        const auto [down_z, u, v, facet_x] = four_numbers(shades, 8);
+        const auto [facet_y, facet_z, name, of_object] = four_numbers(shades, 12);
         static_assert(S::kRight == 3 && S::kDown == 6 && S::kU == 9 && S::kFacet == 11);
         static_assert(S::kPrimitive == 14 && S::kObject == 15);
-        const auto dx = hn::Sub(qx, third.b);
-        const auto dy = hn::Sub(qy, third.c);
+        const auto dx = hn::Sub(qx, u);
+        const auto dy = hn::Sub(qy, v);
         const auto linear = [&](Number n, Number right, Number down) {
             return hn::Add(hn::Add(n, hn::Mul(right, dx)), hn::Mul(down, dy));
         };
-        normal = {linear(first.a, first.d, second.c), linear(first.b, second.a, second.d),
-                  linear(first.c, second.b, third.a)};
-        facet = {third.d, fourth.a, fourth.b};
-        primitive = hn::BitCast(kWords, fourth.c);
-        object = hn::BitCast(kWords, fourth.d);
+        normal = {linear(nx, right_x, down_x), linear(ny, right_y, down_y),
+                  linear(nz, right_z, down_z)};
+        facet = {facet_x, facet_y, facet_z};
+        primitive = hn::BitCast(kWords, name);
+        object = hn::BitCast(kWords, of_object);
     }
 
     /// As interpolate_normals: on the facet's side, which stands in where normals cancel.

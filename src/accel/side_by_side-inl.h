@@ -23,6 +23,26 @@ namespace hn = hwy::HWY_NAMESPACE;
 using Four = hn::FixedTag<float, 4>;
 constexpr Four kFour;
 
+/// Four vectors turned round, by blocks of four lanes: block n of the k-th one is what the k-th
+/// lanes of block n of the four were.
+template <class Tag>
+struct TurnedRound {
+    hn::Vec<Tag> first, second, third, fourth;
+
+    /// `row(k)` is the k-th of the four.
+    template <class Row>
+    HWY_INLINE TurnedRound(Tag tag, const Row& row) {
+        const auto even_low = hn::InterleaveLower(tag, row(0), row(2));
+        const auto even_high = hn::InterleaveUpper(tag, row(0), row(2));
+        const auto odd_low = hn::InterleaveLower(tag, row(1), row(3));
+        const auto odd_high = hn::InterleaveUpper(tag, row(1), row(3));
+        first = hn::InterleaveLower(tag, even_low, odd_low);
+        second = hn::InterleaveUpper(tag, even_low, odd_low);
+        third = hn::InterleaveLower(tag, even_high, odd_high);
+        fourth = hn::InterleaveUpper(tag, even_high, odd_high);
+    }
+};
+
 /// The first `count` numbers, a multiple of four, lane by lane.
 template <std::size_t kNumbers>
 HWY_INLINE void lay_side_by_side(const std::array<Lanes<float>, kNumbers>& form, std::size_t count,
@@ -31,22 +51,17 @@ HWY_INLINE void lay_side_by_side(const std::array<Lanes<float>, kNumbers>& form,
     constexpr std::size_t kAtOnce = hn::MaxLanes(kTag);
     for (std::size_t k = 0; k < count; k += 4) {
         for (std::size_t lane = 0; lane < kLanes; lane += kAtOnce) {
-            const auto a = hn::Load(kTag, form[k].data() + lane);
-            const auto b = hn::Load(kTag, form[k + 1].data() + lane);
-            const auto c = hn::Load(kTag, form[k + 2].data() + lane);
-            const auto d = hn::Load(kTag, form[k + 3].data() + lane);
-            const auto ac_low = hn::InterleaveLower(kTag, a, c);
-            const auto ac_high = hn::InterleaveUpper(kTag, a, c);
-            const auto bd_low = hn::InterleaveLower(kTag, b, d);
-            const auto bd_high = hn::InterleaveUpper(kTag, b, d);
+            const TurnedRound things(kTag, [&](std::size_t n) HWY_ATTR {
+                return hn::Load(kTag, form[k + n].data() + lane);
+            });
             // A lane, and every fourth one after it.
             const auto put = [&](std::size_t n, auto numbers) {
                 store_rows(kTag, numbers, &forms[lane + n][k], 4 * kNumbers);
             };
-            put(0, hn::InterleaveLower(kTag, ac_low, bd_low));
-            put(1, hn::InterleaveUpper(kTag, ac_low, bd_low));
-            put(2, hn::InterleaveLower(kTag, ac_high, bd_high));
-            put(3, hn::InterleaveUpper(kTag, ac_high, bd_high));
+            put(0, things.first);
+            put(1, things.second);
+            put(2, things.third);
+            put(3, things.fourth);
         }
     }
 }
